@@ -1,0 +1,55 @@
+// A dynamic tree of bounding boxes: insertion by the surface-area cost, rotations keep it shallow, removal is exact.
+// Leaves carry an integer of the caller's. The shape of the tree depends on its history, the set of answers does not:
+// callers sort what they get.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "collision/aabb.h"
+
+namespace tumble {
+
+class AabbTree {
+ public:
+  using Leaf = std::int32_t;
+  static constexpr Leaf kNone = -1;
+
+  Leaf insert(const Aabb& bounds, std::uint32_t user);
+  void remove(Leaf leaf);
+  /// Gives the leaf new bounds: removed and inserted again.
+  void move(Leaf leaf, const Aabb& bounds);
+  const Aabb& bounds(Leaf leaf) const { return nodes_[static_cast<std::size_t>(leaf)].bounds; }
+
+  /// Appends the `user` of every leaf that overlaps `bounds`, in no useful order.
+  void query(const Aabb& bounds, std::vector<std::uint32_t>& users) const;
+
+  /// Longest way from the root to a leaf; 0 for one leaf, -1 for none.
+  int height() const;
+  std::size_t size() const { return leaves_; }
+
+ private:
+  struct Node {
+    Aabb bounds;
+    Leaf parent = kNone;       // next free node when unused
+    Leaf child[2] = {kNone, kNone};
+    std::int32_t height = 0;   // 0: leaf
+    std::uint32_t user = 0;
+    bool is_leaf() const { return child[0] == kNone; }
+  };
+
+  Leaf allocate();
+  void release(Leaf node);
+  void insert_leaf(Leaf leaf);
+  void remove_leaf(Leaf leaf);
+  Leaf best_sibling(const Aabb& bounds) const;
+  void refit_upwards(Leaf node);
+  void rotate(Leaf node);
+
+  std::vector<Node> nodes_;
+  Leaf root_ = kNone;
+  Leaf free_ = kNone;
+  std::size_t leaves_ = 0;
+};
+
+}  // namespace tumble

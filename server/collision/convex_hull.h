@@ -1,0 +1,36 @@
+// A convex polyhedron: vertices, merged planar faces with counter-clockwise loops (seen from outside), unique edges.
+// Built once from points (3-D quickhull with coplanar faces merged); constant afterwards and shared between bodies.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "math/types.h"
+
+namespace tumble {
+
+struct ConvexHull {
+  struct Face {
+    Vec3 normal;              ///< Outward unit normal.
+    double offset;            ///< normal . x = offset on the face [m].
+    std::uint32_t first, count;  ///< Slice of `loops`: the face's vertices, counter-clockwise from outside.
+  };
+  struct Edge {
+    std::uint32_t tail, head;         ///< Vertex indices.
+    std::uint32_t left_face, right_face;  ///< Faces on either side; the loop of left_face runs tail -> head.
+  };
+
+  std::vector<Vec3> vertices;  ///< [m], only points on the hull.
+  std::vector<std::uint32_t> loops;
+  std::vector<Face> faces;
+  std::vector<Edge> edges;
+  std::vector<std::uint32_t> neighbour_offsets;  ///< Size vertices + 1: slice of `neighbours` of each vertex.
+  std::vector<std::uint32_t> neighbours;         ///< Vertices joined by an edge, for hill climbing.
+  double radius = 0.0;                           ///< Largest |vertex| [m].
+};
+
+/// Hull of at least 4 points [m] that span a volume. Throws std::invalid_argument naming the cause and the point
+/// (fewer than 4 distinct points, non-finite coordinate, all in one plane within 1e-9 of their extent).
+ConvexHull build_convex_hull(const std::vector<Vec3>& points);
+
+}  // namespace tumble

@@ -1,0 +1,51 @@
+// The solids that collide. A shape is constant and knows no pose; its frame S has the origin and axes named here.
+// All lengths in [m], all finite and > 0 (`check_shape` says what is wrong, the scene and command readers call it).
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <variant>
+
+#include "collision/aabb.h"
+#include "collision/convex_hull.h"
+#include "math/pose.h"
+
+namespace tumble {
+
+struct Sphere {
+  double radius;
+};
+struct Box {
+  Vec3 half_extents;
+};
+/// Segment of length 2 half_length along S's z axis, inflated by radius.
+struct Capsule {
+  double radius, half_length;
+};
+/// Everything with z_S <= 0; the surface normal is +z_S. Static bodies only: it has no mass.
+struct HalfSpace {};
+/// Shared, since hulls are big and constant.
+using HullPointer = std::shared_ptr<const ConvexHull>;
+
+/// The order of the alternatives is the order of the pair matrix in narrow_phase.cpp.
+using Shape = std::variant<HalfSpace, Sphere, Capsule, Box, HullPointer>;
+inline constexpr std::size_t kShapeTypes = std::variant_size_v<Shape>;
+
+/// Plain lower-case name of the shape's type, as on the wire: "half_space", "sphere", "capsule", "box", "convex_hull".
+const char* shape_name(const Shape& shape);
+
+/// Empty if the shape is sound, else "field: what is wrong with which value".
+std::string check_shape(const Shape& shape);
+
+/// Tight bounds of the shape at X_WS, in W. A half-space has infinite bounds on every side but an axis-aligned top.
+Aabb compute_aabb(const Shape& shape, const Pose& X_WS);
+
+/// Largest distance of a point of the shape from S's origin [m]; infinite for a half-space.
+double bounding_radius(const Shape& shape);
+
+/// Furthest point of the shape along d (any length > 0), both in S. True vertices, ties resolved by copysign, so that
+/// mirrored calls give mirrored points. Not for half-spaces.
+Vec3 support(const Shape& shape, const Vec3& d_S);
+
+}  // namespace tumble

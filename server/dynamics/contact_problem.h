@@ -1,0 +1,94 @@
+// The velocity problem of one island: bodies, Coulomb contacts and scalar rows (springs, ropes), built once a step and
+// handed to any solver. All vectors in W. n points from a to b, u = velocity of b relative to a at the point,
+// impulses lambda [N s] act with + on b and - on a. Conditions per contact, with the velocity bound b_i:
+//   0 <= lambda_n  perp  u_n - b_i >= 0,   |lambda_t| <= mu lambda_n,   lambda_t opposite to u_t where it slides.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "dynamics/body.h"
+
+namespace tumble {
+
+/// One body as the solvers see it. Immovable bodies have inv_mass = 0 and inv_I_W = 0: impulses leave them unchanged.
+struct SolverBody {
+  Vec3 v, w;               ///< In: after external forces (v*, w*). Out: at the end of the step.
+  Vec3 v0, w0;             ///< At the start of the step (after impacts), before forces.
+  double inv_mass;
+  Mat3 inv_I_W;
+  Vec3 x;                  ///< Centre of mass at the start of the step [m].
+  Quat q;
+  Vec3 shift = Vec3::Zero();  ///< Out: extra displacement beyond the drift [m] (positional correction, sub-steps).
+  Vec3 turn = Vec3::Zero();   ///< Out: extra rotation vector [rad], world axes, applied after the drift.
+};
+
+struct PointContact {
+  std::uint32_t a, b;      ///< Indices into `bodies`.
+  Vec3 n, t1, t2;          ///< Right-handed: t2 = n x t1.
+  Vec3 rA, rB;             ///< Contact point (middle of the gap) from each centre of mass [m].
+  double separation;       ///< Gap at the start of the step [m]; < 0 overlap.
+  double friction, restitution;
+  Vec3 lambda = Vec3::Zero();  ///< (n, t1, t2) [N s]. In: warm start. Out: the solution.
+  double un0 = 0.0;        ///< Normal velocity at the start of the step [m/s], < 0 closing; set by `prepare`.
+  double bound = 0.0;      ///< b_i [m/s]; set by `prepare`.
+  double mass_n = 0.0, mass_t = 0.0;  ///< 1/k_nn and 1/lambda_max(K_tt) [kg]; set by `prepare`.
+};
+
+/// One direction: u = n . (velocity of b's anchor - a's anchor).
+///   soft:  lambda = -softness (u + bias), unbounded (springs);   rigid (softness = inf): u >= bound, lambda >= 0 (rope:
+///   n from a to b reversed, so that lambda >= 0 pulls the bodies together).
+struct ScalarRow {
+  std::uint32_t a, b;
+  Vec3 n, rA, rB;
+  double softness = std::numeric_limits<double>::infinity();  ///< [kg]
+  double bias = 0.0;       ///< [m/s]
+  double bound = 0.0;      ///< [m/s], rigid rows only.
+  double lower = 0.0;      ///< Smallest lambda: 0 or -infinity.
+  double lambda = 0.0;     ///< [N s]
+  double mass = 0.0;       ///< 1/k [kg]; set by `prepare`.
+};
+
+struct ContactProblem {
+  /// Average: bodies move with (v0 + v)/2, exact for constant acceleration. End: with v, right in a step in which a
+  /// contact closes.
+  enum class Drift { average, end };
+
+  double h = 0.0;                     ///< Step [s].
+  std::vector<SolverBody> bodies;
+  std::vector<PointContact> contacts;
+  std::vector<ScalarRow> rows;
+  Drift drift = Drift::end;           ///< Out.
+
+  void clear() {
+    bodies.clear();
+    contacts.clear();
+    rows.clear();
+  }
+};
+
+/// Fills t1, t2 (a fixed function of n).
+void set_tangents(PointContact& contact);
+
+/// Fills the masses, un0 and the bounds: gap > 0: b = -gap/h (may close, not cross); gap <= 0: b = min(push_speed,
+/// push_fraction (-gap - slop)/h).
+struct BoundSettings {
+  double slop;           ///< [m] overlap that is not pushed out.
+  double push_fraction;  ///< Share of the overlap removed per step, 0..1.
+  double push_speed;     ///< [m/s] upper limit of that push.
+};
+void prepare(ContactProblem& problem, const BoundSettings& settings);
+
+/// v, w += M^-1 J^T lambda of every contact and row.
+void apply_stored_impulses(ContactProblem& problem);
+
+/// Largest violation of the conditions at the current (v, lambda) [m/s], the natural map of the Coulomb problem:
+///   r_n = |max(0, l_n - m_n (u_n - b)) - l_n| / m_n,   r_t = |P_disc(l_t - m_t u_t) - l_t| / m_t.
+/// NaN if anything is not finite.
+double compute_residual(const ContactProblem& problem);
+
+/// Average if with it every contact keeps gap + h u_n >= min(gap, 0) - 1e-8 m, else end.
+ContactProblem::Drift choose_drift(const ContactProblem& problem);
+
+}  // namespace tumble

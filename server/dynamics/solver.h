@@ -1,0 +1,42 @@
+// The ways to solve a ContactProblem: rivals in a file each, one signature, chosen by name.
+#pragma once
+
+#include <optional>
+#include <string_view>
+
+#include "dynamics/contact_problem.h"
+
+namespace tumble {
+
+enum class Solver {
+  course_impulse,  ///< The slides: one contact at a time, fraction f of the unit impulse, positional correction.
+  pgs,             ///< Warm-started projected Gauss-Seidel, friction disc, sweeps until the residual is small.
+  soft_step,       ///< Sub-steps with soft contacts and a relax pass (TGS-soft).
+};
+
+struct SolverSettings {
+  int max_sweeps = 30;         ///< pgs: upper limit of sweeps; course_impulse: passes over the contacts.
+  double tolerance = 1e-8;     ///< [m/s] residual at which pgs stops.
+  int sub_steps = 4;           ///< soft_step.
+  Vec3 gravity = Vec3::Zero();  ///< [m/s^2]; course_impulse tells microcollisions by it.
+};
+
+struct SolverReport {
+  int sweeps = 0;
+  double residual = 0.0;  ///< [m/s], by compute_residual on the result.
+  bool accepted = false;  ///< The warm start was good as it was: nothing was solved.
+};
+
+/// In: prepared problem with v* and stored lambda. Out: end velocities, lambda, drift, shift and turn.
+/// Momentum of the island is conserved to round-off.
+SolverReport solve_course_impulse(ContactProblem& problem, const SolverSettings& settings);
+SolverReport solve_pgs(ContactProblem& problem, const SolverSettings& settings);
+SolverReport solve_soft_step(ContactProblem& problem, const SolverSettings& settings);
+
+using SolveFunction = SolverReport (*)(ContactProblem&, const SolverSettings&);
+SolveFunction solve_function(Solver solver);
+
+const char* solver_name(Solver solver);
+std::optional<Solver> solver_from_name(std::string_view name);
+
+}  // namespace tumble

@@ -1,0 +1,98 @@
+// See rotation.h. The Horner order is fixed: a different order is a different function to the last bit.
+#include "math/rotation.h"
+
+#include <bit>
+#include <cassert>
+#include <cmath>
+#include <cstdint>
+
+namespace tumble {
+namespace {
+
+constexpr double kTwoOverPi = 6.36619772367581382433e-01;
+constexpr double kHalfPiHi = 1.57079632673412561417;       // 33 bits: k * kHalfPiHi is exact for |k| < 2^20
+constexpr double kHalfPiLo = 6.07710050650619224932e-11;
+constexpr double kLn2Hi = 6.93147180369123816490e-01;
+constexpr double kLn2Lo = 1.90821492927058770002e-10;
+constexpr double kLog2E = 1.44269504088896338700;
+
+constexpr double kS[] = {-1.66666666666666324348e-01, 8.33333333332248946124e-03, -1.98412698298579493134e-04,
+                         2.75573137070700676789e-06,  -2.50507602534068634195e-08, 1.58969099521155010221e-10};
+constexpr double kC[] = {4.16666666666666019037e-02, -1.38888888888741095749e-03, 2.48015872894767294178e-05,
+                         -2.75573143513906633035e-07, 2.08757232129817482790e-09, -1.13596475577881948265e-11};
+
+double sin_reduced(double r) {
+  const double r2 = r * r;
+  const double p = kS[0] + r2 * (kS[1] + r2 * (kS[2] + r2 * (kS[3] + r2 * (kS[4] + r2 * kS[5]))));
+  return r + r * (r2 * p);
+}
+
+double cos_reduced(double r) {
+  const double r2 = r * r;
+  const double p = kC[0] + r2 * (kC[1] + r2 * (kC[2] + r2 * (kC[3] + r2 * (kC[4] + r2 * kC[5]))));
+  const double y = 0.5 * r2;
+  const double w = 1.0 - y;
+  return w + (((1.0 - w) - y) + r2 * r2 * p);
+}
+
+/// e^r - 1 for |r| <= 0.35 by its Taylor series to r^13 (remainder < 5e-18).
+double expm1_reduced(double r) {
+  double sum = 1.0 / 6227020800.0;  // 1/13!
+  double factorial = 6227020800.0;
+  for (int n = 12; n >= 2; --n) {
+    factorial /= n + 1;
+    sum = 1.0 / factorial + r * sum;
+  }
+  return r + r * r * sum;
+}
+
+}  // namespace
+
+SinCos sincos(double x) {
+  assert(std::abs(x) < 1.6e6);
+  const double k = std::nearbyint(x * kTwoOverPi);
+  const double r = (x - k * kHalfPiHi) - k * kHalfPiLo;
+  const double s = sin_reduced(r);
+  const double c = cos_reduced(r);
+  switch (static_cast<std::int64_t>(k) & 3) {
+    case 0: return {s, c};
+    case 1: return {c, -s};
+    case 2: return {-s, -c};
+    default: return {-c, s};
+  }
+}
+
+double exp_decay(double x) {
+  assert(x <= 0.0);
+  if (x < -708.0) return 0.0;
+  const double k = std::nearbyint(x * kLog2E);
+  const double r = (x - k * kLn2Hi) - k * kLn2Lo;
+  const auto exponent = static_cast<std::uint64_t>(static_cast<std::int64_t>(k) + 1023) << 52;
+  return (1.0 + expm1_reduced(r)) * std::bit_cast<double>(exponent);
+}
+
+double mean_decay(double x) {
+  assert(x >= 0.0);
+  if (x == 0.0) return 1.0;
+  return (x < 0.34 ? -expm1_reduced(-x) : 1.0 - exp_decay(-x)) / x;
+}
+
+Quat exp_map(const Vec3& r) {
+  const double x2 = 0.25 * r.squaredNorm();  // half angle, squared
+  if (x2 < 0.04) {
+    // Taylor series of cos x and sin x / x: no square root, no division by a tiny angle (remainder < 1e-20).
+    double c = 0.0, s = 0.0;
+    for (int n = 8; n >= 1; --n) {
+      c = (1.0 + c) * (-x2 / ((2.0 * n) * (2.0 * n - 1.0)));
+      s = (1.0 + s) * (-x2 / ((2.0 * n) * (2.0 * n + 1.0)));
+    }
+    const Vec3 v = (0.5 * (1.0 + s)) * r;
+    return Quat(1.0 + c, v.x(), v.y(), v.z());
+  }
+  const double x = std::sqrt(x2);
+  const SinCos sc = sincos(x);
+  const Vec3 v = (0.5 * sc.sin / x) * r;
+  return Quat(sc.cos, v.x(), v.y(), v.z());
+}
+
+}  // namespace tumble

@@ -1,0 +1,55 @@
+// The pairs of geometries that are near each other, with what they remember between steps. Sorted by pair, always: the
+// order of solving, and so every bit of the result, is a function of the indices and not of who met whom first.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "collision/broad_phase.h"
+#include "collision/narrow_phase.h"
+
+namespace tumble {
+
+struct Contact {
+  GeometryPair pair;
+  std::uint32_t body_a = 0, body_b = 0;
+  double friction = 0.0, restitution = 0.0;
+  PairCache cache;
+  Manifold manifold;
+  /// Impulses of the last solve on b at each manifold point, as vectors in W [N s]: the warm start.
+  std::array<Vec3, kMaxManifoldPoints> impulse;
+};
+
+class ContactGraph {
+ public:
+  /// Inserts the pairs that are not there yet; `added` is sorted. `make` fills the materials and bodies of a new one.
+  template <typename Make>
+  void insert(const std::vector<GeometryPair>& added, Make make) {
+    incoming_.clear();
+    for (const GeometryPair pair : added) {
+      if (!find(pair)) incoming_.push_back(make(pair));
+    }
+    merge_incoming();
+  }
+  /// Removes every contact for which `gone(contact)` holds; returns how many.
+  template <typename Gone>
+  std::size_t remove_if(Gone gone) {
+    return static_cast<std::size_t>(std::erase_if(contacts_, gone));
+  }
+
+  const Contact* find(GeometryPair pair) const;
+  std::vector<Contact>& all() { return contacts_; }
+  const std::vector<Contact>& all() const { return contacts_; }
+
+ private:
+  void merge_incoming();
+  std::vector<Contact> contacts_, incoming_;
+};
+
+/// Carries impulses from the old manifold's points to the new ones: same feature first, else the nearest old point
+/// within `reach` [m], each used once; impulses that would pull are dropped.
+void transport_impulses(const Manifold& old_manifold, const std::array<Vec3, kMaxManifoldPoints>& old_impulse,
+                        const Manifold& manifold, const Vec3& normal_W, double reach,
+                        std::array<Vec3, kMaxManifoldPoints>& impulse);
+
+}  // namespace tumble

@@ -1,0 +1,41 @@
+// What the world says of itself: conserved quantities, violations, and what each stage did and skipped. Counters count
+// from the world's creation; times belong to the caller's clock (the world has none).
+#pragma once
+
+#include <cstdint>
+
+#include "collision/narrow_phase.h"
+#include "math/types.h"
+
+namespace tumble {
+
+struct Counters {
+  NarrowPhaseCounters narrow_phase;
+  std::uint64_t boxes_renewed = 0;        ///< Broad-phase boxes that a body left.
+  std::uint64_t bodies_stepped = 0, bodies_skipped_resting = 0;
+  std::uint64_t islands_solved = 0, islands_accepted = 0, islands_free = 0;
+  std::uint64_t sweeps = 0;
+  std::uint64_t impacts = 0, impacts_capped = 0;
+  std::uint64_t rests = 0, wakes = 0;
+  std::uint64_t non_finite_contained = 0;  ///< Bodies held at their last good state.
+};
+
+/// Of the last step.
+struct StepReport {
+  std::uint32_t bodies_awake = 0, bodies_resting = 0;
+  std::uint32_t pairs = 0, contacts = 0, islands = 0;
+  double deepest_penetration = 0.0;  ///< [m], >= 0
+  double max_residual = 0.0;         ///< [m/s]
+};
+
+/// Sums over all movable bodies, about W's origin.
+struct Conserved {
+  double kinetic_energy = 0.0, potential_energy = 0.0;  ///< [J]; gravity (0 at the origin's height) and springs
+  Vec3 momentum = Vec3::Zero();                         ///< [N s]
+  Vec3 angular_momentum = Vec3::Zero();                 ///< [N m s]
+};
+
+/// Called at the border between stages, so that a caller with a clock can time them.
+enum class Stage { commands, broad_phase, narrow_phase, islands, solve, rest, count };
+
+}  // namespace tumble

@@ -1,0 +1,47 @@
+// Every knob of the engine: meaning, unit, reason of its default, cost of changing it. This file is the tuning manual.
+#pragma once
+
+#include <optional>
+#include <string_view>
+
+#include "collision/narrow_phase.h"
+#include "dynamics/integrator.h"
+#include "dynamics/rest.h"
+#include "dynamics/solver.h"
+
+namespace tumble {
+
+enum class Accuracy { fast, balanced, exact };
+
+struct Options {
+  double time_step = 1.0 / 240.0;  ///< [s], 1e-6..0.1. Smaller: better contacts, proportionally slower.
+  Vec3 gravity = Vec3(0.0, 0.0, -9.81);  ///< [m/s^2]
+  Integrator integrator = Integrator::taylor8;
+  Solver solver = Solver::pgs;
+
+  // Collision
+  double contact_margin = 0.02;    ///< [m] contacts start at this gap. Smaller: fewer rows, later warm start.
+  double fat_margin = 0.05;        ///< [m] slack of broad-phase boxes. Larger: fewer renewals, more pairs.
+  NarrowPhaseOptions narrow_phase;
+
+  // Contact
+  SolverSettings solver_settings;
+  BoundSettings bounds = {.slop = 0.0, .push_fraction = 0.2, .push_speed = 3.0};
+  double restitution_threshold = 0.01;  ///< [m/s] closing speeds below it do not bounce; see resolve_impacts.
+  int max_impacts = 64;                 ///< Impulses per contact and step before the rest is inelastic.
+  bool warm_start = true;               ///< Off: every solve starts from zero impulses.
+
+  // Rest
+  RestSettings rest;
+  bool skip_resting = true;        ///< Off: resting islands are stepped like all others.
+};
+
+/// Options for a level of accuracy: budgets and tolerances together.
+///   fast: 8 sweeps, 1e-4 m/s.  balanced (default): 30 sweeps, 1e-6 m/s.  exact: 1000 sweeps, 1e-9 m/s.
+void set_accuracy(Options& options, Accuracy accuracy);
+std::optional<Accuracy> accuracy_from_name(std::string_view name);
+
+/// Empty if every field is in its range, else "field: reason (value)".
+std::string check_options(const Options& options);
+
+}  // namespace tumble

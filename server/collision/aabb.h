@@ -23,9 +23,10 @@ struct Aabb {
   Aabb swept(const Vec3& displacement) const {
     return {lower + displacement.cwiseMin(0.0), upper + displacement.cwiseMax(0.0)};
   }
-  /// Half the surface area [m^2]: the cost measure of the tree.
+  /// Half the surface area [m^2]: the cost measure of the tree. Extents are cut at 1e100 m: half-spaces have infinite
+  /// boxes, and differences of infinite areas would be NaN. The boxes themselves, and so all answers, stay exact.
   double half_area() const {
-    const Vec3 d = upper - lower;
+    const Vec3 d = (upper - lower).cwiseMin(1e100);
     return d.x() * d.y() + d.y() * d.z() + d.z() * d.x();
   }
 };

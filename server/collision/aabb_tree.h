@@ -19,7 +19,7 @@ class AabbTree {
   void remove(Leaf leaf);
   /// Gives the leaf new bounds: removed and inserted again.
   void move(Leaf leaf, const Aabb& bounds);
-  const Aabb& bounds(Leaf leaf) const { return nodes_[static_cast<std::size_t>(leaf)].bounds; }
+  const Aabb& bounds(Leaf leaf) const { return at(leaf).bounds; }
 
   /// Appends the `user` of every leaf that overlaps `bounds`, in no useful order.
   void query(const Aabb& bounds, std::vector<std::uint32_t>& users) const;
@@ -43,8 +43,12 @@ class AabbTree {
   void insert_leaf(Leaf leaf);
   void remove_leaf(Leaf leaf);
   Leaf best_sibling(const Aabb& bounds) const;
+  void refit(Leaf node);
   void refit_upwards(Leaf node);
   void rotate(Leaf node);
+  void replace_child(Leaf parent, Leaf old_child, Leaf new_child);
+  Node& at(Leaf node) { return nodes_[static_cast<std::size_t>(node)]; }
+  const Node& at(Leaf node) const { return nodes_[static_cast<std::size_t>(node)]; }
 
   std::vector<Node> nodes_;
   Leaf root_ = kNone;

@@ -24,7 +24,7 @@ class BroadPhase {
   void remove(std::uint32_t index);
 
   /// The geometry is now within `tight` and will move by about `displacement` [m] this step. Returns true, and gives
-  /// it a new fat box, if it left the old one.
+  /// it a new fat box, if it leaves the old one in this step; so a fat box always covers the step ahead of it.
   bool move(std::uint32_t index, const Aabb& tight, double fat_margin, const Vec3& displacement);
 
   /// Appends to `pairs`, sorted and without duplicates, every pair of overlapping fat boxes in which at least one

@@ -1,0 +1,157 @@
+// See codec.h. Strings are the only parts of the received types that vary in length; they are walked here before the
+// generated decoder sees the bytes, so that it can neither throw nor over-allocate.
+#include "protocol/codec.h"
+
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <span>
+
+namespace tumble {
+namespace {
+
+constexpr std::size_t kFingerprint = 8;
+/// Start of both command types: utime, session, client, sequence.
+constexpr std::size_t kClientOffset = kFingerprint + 16, kSequenceOffset = kFingerprint + 24;
+constexpr std::size_t kSenderBytes = kFingerprint + 32;
+
+std::uint64_t read_u64(Bytes bytes, std::size_t at) {
+  std::uint64_t value = 0;
+  for (std::size_t i = 0; i < 8; ++i) value = value << 8 | bytes[at + i];
+  return value;
+}
+
+std::uint32_t read_u32(Bytes bytes, std::size_t at) {
+  return static_cast<std::uint32_t>(bytes[at]) << 24 | static_cast<std::uint32_t>(bytes[at + 1]) << 16 |
+         static_cast<std::uint32_t>(bytes[at + 2]) << 8 | bytes[at + 3];
+}
+
+/// Walks fixed bytes and strings in wire order; the first failure stays.
+class Walker {
+ public:
+  explicit Walker(Bytes bytes) : bytes_(bytes) {}
+
+  Walker& fixed(std::size_t size) {
+    if (reason_ != Malformed::none) return *this;
+    if (bytes_.size() - at_ < size) return fail(Malformed::too_short);
+    at_ += size;
+    return *this;
+  }
+  /// A string on the wire: length with the closing zero, bytes, zero.
+  Walker& text(std::size_t limit) {
+    const std::size_t length_at = at_;
+    if (fixed(4).reason_ != Malformed::none) return *this;
+    const std::uint32_t length = read_u32(bytes_, length_at);
+    if (length == 0 || length > limit + 1) return fail(Malformed::bad_text);
+    if (fixed(length).reason_ != Malformed::none) return *this;
+    const Bytes content = bytes_.subspan(at_ - length, length);
+    if (std::memchr(content.data(), 0, length) != &content.back()) return fail(Malformed::bad_text);
+    return *this;
+  }
+  Malformed end() const {
+    if (reason_ == Malformed::none && at_ != bytes_.size()) return Malformed::too_long;
+    return reason_;
+  }
+
+ private:
+  Walker& fail(Malformed reason) {
+    reason_ = reason;
+    return *this;
+  }
+  Bytes bytes_;
+  std::size_t at_ = 0;
+  Malformed reason_ = Malformed::none;
+};
+
+template <typename Message>
+Malformed check_start(Bytes bytes) {
+  if (bytes.size() < kFingerprint) return Malformed::too_short;
+  if (read_u64(bytes, 0) != static_cast<std::uint64_t>(Message::getHash())) return Malformed::wrong_fingerprint;
+  if (bytes.size() > kMaxCommandBytes) return Malformed::too_long;
+  return Malformed::none;
+}
+
+/// Runs the generated decoder on bytes whose structure was checked.
+template <typename Message>
+Malformed decode_checked(Bytes bytes, Message& message) {
+  const int size = static_cast<int>(bytes.size());
+  return message.decode(bytes.data(), 0, size) == size ? Malformed::none : Malformed::too_short;
+}
+
+bool finite(std::span<const double> values) {
+  for (const double value : values) {
+    if (!std::isfinite(value)) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+const char* malformed_text(Malformed reason) {
+  switch (reason) {
+    case Malformed::none: return "sound";
+    case Malformed::too_short: return "it ends too early";
+    case Malformed::too_long: return "it is too long";
+    case Malformed::wrong_fingerprint: return "it is of another type or version";
+    case Malformed::bad_text: return "a text in it is damaged or too long";
+    case Malformed::count: break;
+  }
+  return "unknown reason";
+}
+
+Malformed decode(Bytes bytes, force_command_t& message) {
+  if (const Malformed reason = check_start<force_command_t>(bytes); reason != Malformed::none) return reason;
+  const auto size = static_cast<std::size_t>(message.getEncodedSize());
+  if (bytes.size() < size) return Malformed::too_short;
+  if (bytes.size() > size) return Malformed::too_long;
+  return decode_checked(bytes, message);
+}
+
+Malformed decode(Bytes bytes, control_t& message) {
+  if (const Malformed reason = check_start<control_t>(bytes); reason != Malformed::none) return reason;
+  constexpr std::size_t before_name = kFingerprint + 6 * 8 + 1 + 8 + 2 * 4;
+  constexpr std::size_t after_name = 2 + 3 * 8 + 8 + 3 * 8 + 4 * 8 + 3 * 8 + 3 * 8 + 2 * 8 + 4 * 4;
+  const Malformed reason = Walker(bytes).fixed(before_name).text(kMaxBodyName).fixed(after_name).end();
+  return reason == Malformed::none ? decode_checked(bytes, message) : reason;
+}
+
+Malformed decode(Bytes bytes, heartbeat_t& message) {
+  if (const Malformed reason = check_start<heartbeat_t>(bytes); reason != Malformed::none) return reason;
+  constexpr std::size_t kText = 255;
+  const Malformed reason = Walker(bytes)
+                               .fixed(kFingerprint + 2 * 8 + 2 * 4)
+                               .text(kText)
+                               .text(kText)
+                               .text(kText)
+                               .text(kText)
+                               .fixed(5 * 8 + 1 + 2 * 8 + 2 * 4)
+                               .end();
+  return reason == Malformed::none ? decode_checked(bytes, message) : reason;
+}
+
+Sender read_sender(Bytes bytes) {
+  if (bytes.size() < kSenderBytes) return {};
+  const std::uint64_t fingerprint = read_u64(bytes, 0);
+  if (fingerprint != static_cast<std::uint64_t>(force_command_t::getHash()) &&
+      fingerprint != static_cast<std::uint64_t>(control_t::getHash())) {
+    return {};
+  }
+  return {std::bit_cast<std::int64_t>(read_u64(bytes, kClientOffset)),
+          std::bit_cast<std::int64_t>(read_u64(bytes, kSequenceOffset))};
+}
+
+bool all_finite(const force_command_t& command) {
+  return finite(command.force) && finite(command.torque) && finite(command.point) &&
+         std::isfinite(command.duration);
+}
+
+bool all_finite(const control_t& command) {
+  for (const float value : command.color) {
+    if (!std::isfinite(value)) return false;
+  }
+  return finite(command.size) && finite(command.position) && finite(command.orientation) &&
+         finite(command.velocity) && finite(command.angular_velocity) && std::isfinite(command.mass) &&
+         std::isfinite(command.friction) && std::isfinite(command.restitution);
+}
+
+}  // namespace tumble

@@ -1,0 +1,56 @@
+// Bytes <-> messages. What comes from the network is read only here: the length is checked before decoding, the whole
+// buffer must be consumed, counts are bounded before anything is allocated, every number must be finite. The generated
+// decoders check none of that (a count in a 28-byte message can make them allocate gigabytes).
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "protocol/channels.h"
+#include "tumble/control_t.hpp"
+#include "tumble/force_command_t.hpp"
+#include "tumble/heartbeat_t.hpp"
+
+namespace tumble {
+
+/// Why bytes are not a message. Counted by reason; `none` is success.
+enum class Malformed : std::uint8_t {
+  none,
+  too_short,          ///< Ends before the message does.
+  too_long,           ///< Longer than any message of this type, or bytes are left over.
+  wrong_fingerprint,  ///< Another type, or another version of the type.
+  bad_text,           ///< A string whose length or end is wrong, or longer than its limit.
+  count
+};
+const char* malformed_text(Malformed reason);
+
+/// Who sent a command, readable from its fixed start even where the rest is damaged, so that it can be answered.
+struct Sender {
+  std::int64_t client = 0, sequence = 0;  ///< 0: unknown.
+};
+
+using Bytes = std::span<const std::uint8_t>;
+
+/// Decode `bytes` into `message`; on any reason but `none` its content is undefined. Never throws, never allocates
+/// more than the bytes hold. Numbers may be non-finite: see `all_finite`.
+Malformed decode(Bytes bytes, force_command_t& message);
+Malformed decode(Bytes bytes, control_t& message);
+Malformed decode(Bytes bytes, heartbeat_t& message);
+
+/// The sender of a force_command_t or control_t that `decode` refused; {0, 0} if the bytes don't name one.
+Sender read_sender(Bytes bytes);
+
+/// True if every floating-point number of the command is finite.
+bool all_finite(const force_command_t& command);
+bool all_finite(const control_t& command);
+
+/// The message as bytes, fingerprint first; `bytes` keeps its capacity.
+template <typename Message>
+void encode(const Message& message, std::vector<std::uint8_t>& bytes) {
+  const int size = message.getEncodedSize();
+  bytes.resize(static_cast<std::size_t>(size));
+  message.encode(bytes.data(), 0, size);
+}
+
+}  // namespace tumble

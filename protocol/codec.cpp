@@ -4,80 +4,27 @@
 
 #include <bit>
 #include <cmath>
-#include <cstring>
 #include <span>
+
+#include "protocol/layout.h"
 
 namespace tumble {
 namespace {
 
-constexpr std::size_t kFingerprint = 8;
 /// Start of both command types: utime, session, client, sequence.
 constexpr std::size_t kClientOffset = kFingerprint + 16, kSequenceOffset = kFingerprint + 24;
 constexpr std::size_t kSenderBytes = kFingerprint + 32;
 
-std::uint64_t read_u64(Bytes bytes, std::size_t at) {
-  std::uint64_t value = 0;
-  for (std::size_t i = 0; i < 8; ++i) value = value << 8 | bytes[at + i];
-  return value;
-}
-
-std::uint32_t read_u32(Bytes bytes, std::size_t at) {
-  return static_cast<std::uint32_t>(bytes[at]) << 24 | static_cast<std::uint32_t>(bytes[at + 1]) << 16 |
-         static_cast<std::uint32_t>(bytes[at + 2]) << 8 | bytes[at + 3];
-}
-
-/// Walks fixed bytes and strings in wire order; the first failure stays.
-class Walker {
- public:
-  explicit Walker(Bytes bytes) : bytes_(bytes) {}
-
-  Walker& fixed(std::size_t size) {
-    if (reason_ != Malformed::none) return *this;
-    if (bytes_.size() - at_ < size) return fail(Malformed::too_short);
-    at_ += size;
-    return *this;
-  }
-  /// A string on the wire: length with the closing zero, bytes, zero.
-  Walker& text(std::size_t limit) {
-    const std::size_t length_at = at_;
-    if (fixed(4).reason_ != Malformed::none) return *this;
-    const std::uint32_t length = read_u32(bytes_, length_at);
-    if (length == 0 || length > limit + 1) return fail(Malformed::bad_text);
-    if (fixed(length).reason_ != Malformed::none) return *this;
-    const Bytes content = bytes_.subspan(at_ - length, length);
-    if (std::memchr(content.data(), 0, length) != &content.back()) return fail(Malformed::bad_text);
-    return *this;
-  }
-  Malformed end() const {
-    if (reason_ == Malformed::none && at_ != bytes_.size()) return Malformed::too_long;
-    return reason_;
-  }
-
- private:
-  Walker& fail(Malformed reason) {
-    reason_ = reason;
-    return *this;
-  }
-  Bytes bytes_;
-  std::size_t at_ = 0;
-  Malformed reason_ = Malformed::none;
-};
-
 template <typename Message>
 Malformed check_start(Bytes bytes) {
   if (bytes.size() < kFingerprint) return Malformed::too_short;
-  if (read_u64(bytes, 0) != static_cast<std::uint64_t>(Message::getHash())) return Malformed::wrong_fingerprint;
+  if (read_u64(bytes, 0) != static_cast<std::uint64_t>(Message::getHash()))
+    return Malformed::wrong_fingerprint;
   if (bytes.size() > kMaxCommandBytes) return Malformed::too_long;
   return Malformed::none;
 }
 
 /// Runs the generated decoder on bytes whose structure was checked.
-template <typename Message>
-Malformed decode_checked(Bytes bytes, Message& message) {
-  const int size = static_cast<int>(bytes.size());
-  return message.decode(bytes.data(), 0, size) == size ? Malformed::none : Malformed::too_short;
-}
-
 bool finite(std::span<const double> values) {
   for (const double value : values) {
     if (!std::isfinite(value)) return false;
@@ -89,12 +36,18 @@ bool finite(std::span<const double> values) {
 
 const char* malformed_text(Malformed reason) {
   switch (reason) {
-    case Malformed::none: return "sound";
-    case Malformed::too_short: return "it ends too early";
-    case Malformed::too_long: return "it is too long";
-    case Malformed::wrong_fingerprint: return "it is of another type or version";
-    case Malformed::bad_text: return "a text in it is damaged or too long";
-    case Malformed::count: break;
+    case Malformed::none:
+      return "sound";
+    case Malformed::too_short:
+      return "it ends too early";
+    case Malformed::too_long:
+      return "it is too long";
+    case Malformed::wrong_fingerprint:
+      return "it is of another type or version";
+    case Malformed::bad_text:
+      return "a text in it is damaged or too long";
+    case Malformed::count:
+      break;
   }
   return "unknown reason";
 }

@@ -8,9 +8,15 @@
 #include <vector>
 
 #include "protocol/channels.h"
+#include "tumble/ack_t.hpp"
+#include "tumble/body_state_t.hpp"
+#include "tumble/catalog_t.hpp"
+#include "tumble/contacts_t.hpp"
 #include "tumble/control_t.hpp"
 #include "tumble/force_command_t.hpp"
 #include "tumble/heartbeat_t.hpp"
+#include "tumble/state_t.hpp"
+#include "tumble/stats_t.hpp"
 
 namespace tumble {
 
@@ -37,6 +43,12 @@ using Bytes = std::span<const std::uint8_t>;
 Malformed decode(Bytes bytes, force_command_t& message);
 Malformed decode(Bytes bytes, control_t& message);
 Malformed decode(Bytes bytes, heartbeat_t& message);
+Malformed decode(Bytes bytes, state_t& message);
+Malformed decode(Bytes bytes, stats_t& message);
+Malformed decode(Bytes bytes, body_state_t& message);
+Malformed decode(Bytes bytes, catalog_t& message);
+Malformed decode(Bytes bytes, contacts_t& message);
+Malformed decode(Bytes bytes, ack_t& message);
 
 /// The sender of a force_command_t or control_t that `decode` refused; {0, 0} if the bytes don't name one.
 Sender read_sender(Bytes bytes);

@@ -1,0 +1,73 @@
+#!/usr/bin/env python3
+"""Runs the benchmark programs of a build and writes what they say to README.md, with the machine and the versions.
+
+    run_benchmarks.py BUILD [NAME...]     all programs bench_*, or those named (`step` or `bench_step`)
+"""
+import json
+import os
+import pathlib
+import platform
+import re
+import subprocess
+import sys
+
+HERE = pathlib.Path(__file__).parent
+OWN_KEYS = {"name", "family_index", "per_family_instance_index", "run_name", "run_type", "repetitions",
+            "repetition_index", "threads", "iterations", "real_time", "cpu_time", "time_unit"}
+
+
+def run_program(program):
+    """The parsed report of one program; its progress goes to the terminal."""
+    print(f"running {program.name}", file=sys.stderr)
+    output = subprocess.run([program, "--benchmark_format=json"], check=True, stdout=subprocess.PIPE, text=True).stdout
+    return json.loads(output)
+
+
+def table(report):
+    """A Markdown table: one measurement a line, one counter a column."""
+    runs = report["benchmarks"]
+    counters = list(dict.fromkeys(key for run in runs for key in run if key not in OWN_KEYS))
+    lines = ["| " + " | ".join(["measurement", "time", *counters]) + " |", "|---" * (len(counters) + 2) + "|"]
+    for run in runs:
+        values = [f"{run[key]:.4g}" if isinstance(run.get(key), (int, float)) else str(run.get(key, ""))
+                  for key in counters]
+        name = run["name"].replace("/real_time", "")
+        lines.append("| " + " | ".join([name, f"{run['real_time']:.4g} {run['time_unit']}", *values]) + " |")
+    return "\n".join(lines)
+
+
+def first_line(*command):
+    return subprocess.run(command, check=True, capture_output=True, text=True).stdout.splitlines()[0]
+
+
+def machine(build):
+    """What the numbers depend on."""
+    model = re.search(r"model name\s*:\s*(.*)", pathlib.Path("/proc/cpuinfo").read_text(encoding="utf-8"))
+    cache = (build / "CMakeCache.txt").read_text(encoding="utf-8")
+    compiler = re.search(r"CMAKE_CXX_COMPILER:\w+=(.*)", cache).group(1)
+    build_type = re.search(r"CMAKE_BUILD_TYPE:\w+=(.*)", cache).group(1)
+    commit = first_line("git", "-C", HERE, "describe", "--always", "--dirty")
+    return [f"* processor: {model.group(1) if model else platform.machine()}, {os.cpu_count()} logical cores",
+            f"* system: {platform.system()} {platform.release()}",
+            f"* compiler: {first_line(compiler, '--version')}, {build_type}",
+            f"* commit: {commit}"]
+
+
+def main():
+    build = pathlib.Path(sys.argv[1])
+    wanted = {name.removeprefix("bench_") for name in sys.argv[2:]}
+    programs = sorted(path for path in (build / "tests/bench").glob("bench_*") if os.access(path, os.X_OK))
+    programs = [path for path in programs if path.is_file()
+                and (not wanted or path.name.removeprefix("bench_") in wanted)]
+    if not programs or wanted - {path.name.removeprefix("bench_") for path in programs}:
+        sys.exit(f"no such benchmark: {' '.join(sorted(wanted)) or 'none is built'}")
+    sections = [f"## {path.name}\n{table(run_program(path))}" for path in programs]
+    text = "\n".join(["# Benchmarks", "Written by `./run bench`; a counter's unit is part of its name.", "",
+                      *machine(build), "", *sections, ""])
+    print(text)
+    if not wanted:  # a part must not replace the whole
+        (HERE / "README.md").write_text(text, encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,117 @@
+"""Every command is answered, applied at most once, and refused with the reason."""
+import math
+
+import pytest
+
+from wire import (APPLIED, EXPIRED, NOT_FINITE, OUT_OF_RANGE, QUEUED, STALE_GENERATION, UNKNOWN_BODY, UNKNOWN_VERB,
+                  WRONG_SESSION)
+
+PUSH = (6.0, 0.0, 0.0)  # [N], for one step
+
+
+def ball_momentum(wire, ball):
+    index, _, mass = ball
+    last = wire.next("STATE").step
+    return mass * wire.motion(index, condition=lambda m: m.step > last + 1)[1][0]
+
+
+def test_one_answer_for_every_sending_and_one_effect(free_bodies, wire):
+    ball = wire.bodies()["ball"]
+    command = wire.force(body=ball[0], generation=ball[1], force=PUSH)
+    for _ in range(3):
+        wire.send(command)
+    answers = wire.wait(lambda: len(wire.answers(command)) >= 3 and wire.answers(command))
+    wire.listen(0.5)  # nothing more may come
+    assert wire.answers(command) == [answers[0]] * 3 and answers[0].status == APPLIED
+    h = wire.next("HEARTBEAT").dt
+    assert ball_momentum(wire, ball) == pytest.approx(PUSH[0] * h, rel=1e-12)
+
+
+def test_repeated_after_a_while(free_bodies, wire):
+    ball = wire.bodies()["ball"]
+    command = wire.force(body=ball[0], generation=ball[1], force=PUSH)
+    first = wire.ask(command)
+    for _ in range(20):  # others in between
+        wire.ask(wire.force(body=ball[0], generation=ball[1]))
+    wire.send(command)
+    again = wire.wait(lambda: len(wire.answers(command)) == 2 and wire.answers(command)[1])
+    assert again == first
+    assert ball_momentum(wire, ball) == pytest.approx(PUSH[0] * wire.next("HEARTBEAT").dt, rel=1e-12)
+    assert wire.next("STATS").commands_repeated == 1
+
+
+def test_a_burst_is_answered_completely(free_bodies, wire):
+    ball = wire.bodies()["ball"]
+    commands = [wire.force(body=ball[0], generation=ball[1], force=PUSH) for _ in range(20)]
+    for command in commands:
+        wire.send(command)
+    wire.wait(lambda: all(wire.answers(command) for command in commands))
+    assert [[a.status for a in wire.answers(c)] for c in commands] == [[APPLIED]] * 20
+    h = wire.next("HEARTBEAT").dt
+    assert ball_momentum(wire, ball) == pytest.approx(20 * PUSH[0] * h, rel=1e-12)
+
+
+def test_start_step_is_kept(free_bodies, wire):
+    ball = wire.bodies()["ball"]
+    start = wire.next("STATE").step + 120
+    command = wire.force(body=ball[0], generation=ball[1], force=PUSH, start_step=start)
+    answer = wire.ask(command)
+    assert [a.status for a in wire.answers(command)] == [QUEUED, APPLIED]
+    assert answer.applied_step == start
+
+
+@pytest.mark.parametrize("fields, status", [
+    ({"body": 999}, UNKNOWN_BODY),
+    ({"body": -1}, UNKNOWN_BODY),
+    ({"generation": 77}, STALE_GENERATION),
+    ({"force": (math.nan, 0.0, 0.0)}, NOT_FINITE),
+    ({"torque": (0.0, math.inf, 0.0)}, NOT_FINITE),
+    ({"duration": -math.inf}, NOT_FINITE),
+    ({"force": (1e300, 0.0, 0.0)}, OUT_OF_RANGE),
+    ({"duration": -1.0}, OUT_OF_RANGE),
+    ({"frame": 7}, OUT_OF_RANGE),
+    ({"expiry_step": 1}, EXPIRED),
+    ({"session": 12345}, WRONG_SESSION),
+])
+def test_refused_forces_say_why_and_change_nothing(free_bodies, wire, fields, status):
+    ball = wire.bodies()["ball"]
+    wire.next("STATE", condition=lambda m: m.step > 2)
+    refused = wire.next("STATS").commands_refused
+    command = wire.force(body=ball[0], generation=ball[1], force=PUSH)
+    for name, value in fields.items():
+        setattr(command, name, value)
+    answer = wire.ask(command)
+    assert (answer.status, answer.applied_step) == (status, -1)
+    assert answer.detail
+    assert ball_momentum(wire, ball) == 0.0
+    assert wire.next("STATS").commands_refused == refused + 1
+
+
+def test_unknown_verb(free_bodies, wire):
+    answer = wire.ask(wire.control(99))
+    assert answer.status == UNKNOWN_VERB and answer.detail
+
+
+def test_removed_body_is_stale(free_bodies, wire):
+    ball = wire.bodies()["ball"]
+    assert wire.ask(wire.control(wire.verb("REMOVE"), body=ball[0], generation=ball[1])).status == APPLIED
+    answer = wire.ask(wire.force(body=ball[0], generation=ball[1], force=PUSH))
+    assert answer.status in (STALE_GENERATION, UNKNOWN_BODY)
+    assert "ball" not in wire.bodies()
+
+
+def test_spawned_body_is_listed_and_can_be_pushed(free_bodies, wire):
+    command = wire.control(wire.verb("SPAWN"), name="new", body_type=1, shape_type=1, size=(0.5, 0.0, 0.0), mass=4.0,
+                           position=(0.0, 0.0, 50.0))
+    answer = wire.ask(command)
+    assert answer.status == APPLIED, answer.detail
+    body = wire.bodies()["new"]
+    assert body == (answer.body, answer.generation, 4.0)
+    wire.ask(wire.force(body=body[0], generation=body[1], force=PUSH))
+    assert ball_momentum(wire, body) == pytest.approx(PUSH[0] * wire.next("HEARTBEAT").dt, rel=1e-12)
+
+
+def test_name_taken(free_bodies, wire):
+    answer = wire.ask(wire.control(wire.verb("SPAWN"), name="ball", body_type=1, shape_type=1, size=(0.5, 0.0, 0.0),
+                                   mass=1.0))
+    assert answer.status > QUEUED and "ball" in answer.detail

@@ -36,7 +36,8 @@ struct PointContact {
   double mass_n = 0.0, mass_t = 0.0;  ///< 1/k_nn and 1/lambda_max(K_tt) [kg]; set by `prepare`.
 };
 
-/// One direction: u = n . (velocity of b's anchor - a's anchor).
+/// One direction: u = n . (velocity of b's anchor - a's anchor). a, b, rA, rB are given by the owner of the row, the
+/// rest by make_spring_row or make_rope_row.
 ///   soft:  lambda = -softness (u + bias), unbounded (springs);   rigid (softness = inf): u >= bound, lambda >= 0 (rope:
 ///   n from a to b reversed, so that lambda >= 0 pulls the bodies together).
 struct ScalarRow {
@@ -44,10 +45,16 @@ struct ScalarRow {
   Vec3 n, rA, rB;
   double softness = std::numeric_limits<double>::infinity();  ///< [kg]
   double bias = 0.0;       ///< [m/s]
+  double stiffness = 0.0;  ///< k [N/m], soft rows: with damping and extension it can be softened for a shorter step.
+  double damping = 0.0;    ///< c [N s/m], soft rows.
+  double extension = 0.0;  ///< [m] at the start of the step, soft rows.
+  double gap = 0.0;        ///< [m] way left against n before the row is taut, rigid rows; < 0 over-long.
   double bound = 0.0;      ///< [m/s], rigid rows only.
   double lower = 0.0;      ///< Smallest lambda: 0 or -infinity.
   double lambda = 0.0;     ///< [N s]
   double mass = 0.0;       ///< 1/k [kg]; set by `prepare`.
+
+  bool is_soft() const { return softness < std::numeric_limits<double>::infinity(); }
 };
 
 struct ContactProblem {
@@ -71,6 +78,10 @@ struct ContactProblem {
 /// Fills t1, t2 (a fixed function of n).
 void set_tangents(PointContact& contact);
 
+/// Velocity of b's point at rB relative to a's at rA, at (v, w) and at (v0, w0) [m/s].
+Vec3 relative_velocity(const SolverBody& A, const SolverBody& B, const Vec3& rA, const Vec3& rB);
+Vec3 relative_start_velocity(const SolverBody& A, const SolverBody& B, const Vec3& rA, const Vec3& rB);
+
 /// Fills the masses, un0 and the bounds: gap > 0: b = -gap/h (may close, not cross); gap <= 0: b = min(push_speed,
 /// push_fraction (-gap - slop)/h).
 struct BoundSettings {
@@ -85,10 +96,11 @@ void apply_stored_impulses(ContactProblem& problem);
 
 /// Largest violation of the conditions at the current (v, lambda) [m/s], the natural map of the Coulomb problem:
 ///   r_n = |max(0, l_n - m_n (u_n - b)) - l_n| / m_n,   r_t = |P_disc(l_t - m_t u_t) - l_t| / m_t.
-/// NaN if anything is not finite.
+/// Rigid row: the same with its lower limit; soft row: |l + s (u + bias)| / (m + s), the velocity change by which the
+/// row would correct itself. NaN if anything is not finite.
 double compute_residual(const ContactProblem& problem);
 
-/// Average if with it every contact keeps gap + h u_n >= min(gap, 0) - 1e-8 m, else end.
+/// Average if with it every contact and rigid row keeps gap + h u_n >= min(gap, 0) - 1e-8 m, else end.
 ContactProblem::Drift choose_drift(const ContactProblem& problem);
 
 }  // namespace tumble

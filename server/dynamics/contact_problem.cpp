@@ -1,0 +1,138 @@
+// The contact problem of one island: local masses, velocity bounds, warm start, residual and the choice of drift.
+// Formulas: knowledge of the Coulomb problem with velocity bounds, natural-map residual (Acary, Brogliato 2008, ch. 8).
+#include "dynamics/contact_problem.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tumble {
+namespace {
+
+/// d . K d of one body: inverse mass and inverse inertia seen along d at the arm r.
+double inverse_mass_along(const SolverBody& body, const Vec3& r, const Vec3& d, const Vec3& e) {
+  return body.inv_mass * d.dot(e) + r.cross(d).dot(body.inv_I_W * r.cross(e));
+}
+
+void update_masses(const std::vector<SolverBody>& bodies, PointContact& c) {
+  const SolverBody &A = bodies[c.a], &B = bodies[c.b];
+  const auto k = [&](const Vec3& d, const Vec3& e) {
+    return inverse_mass_along(A, c.rA, d, e) + inverse_mass_along(B, c.rB, d, e);
+  };
+  const double k_nn = k(c.n, c.n), k11 = k(c.t1, c.t1), k22 = k(c.t2, c.t2), k12 = k(c.t1, c.t2);
+  const double half = 0.5 * (k11 - k22);
+  const double largest = 0.5 * (k11 + k22) + std::sqrt(half * half + k12 * k12);
+  c.mass_n = k_nn > 0.0 ? 1.0 / k_nn : 0.0;
+  c.mass_t = largest > 0.0 ? 1.0 / largest : 0.0;
+}
+
+double bound_of(double gap, double h, const BoundSettings& settings) {
+  if (gap > 0.0) return -gap / h;
+  return std::min(settings.push_speed, settings.push_fraction * std::max(0.0, -gap - settings.slop) / h);
+}
+
+void apply_impulse(SolverBody& A, SolverBody& B, const Vec3& rA, const Vec3& rB, const Vec3& impulse) {
+  A.v -= A.inv_mass * impulse;
+  A.w -= A.inv_I_W * rA.cross(impulse);
+  B.v += B.inv_mass * impulse;
+  B.w += B.inv_I_W * rB.cross(impulse);
+}
+
+double contact_residual(const ContactProblem& problem, const PointContact& c) {
+  if (c.mass_n == 0.0) return 0.0;  // neither body can be moved
+  const Vec3 u = relative_velocity(problem.bodies[c.a], problem.bodies[c.b], c.rA, c.rB);
+  const double l_n = c.lambda.x();
+  const double r_n = std::abs(std::max(0.0, l_n - c.mass_n * (u.dot(c.n) - c.bound)) - l_n) / c.mass_n;
+  const double l1 = c.lambda.y(), l2 = c.lambda.z();
+  double y1 = l1 - c.mass_t * u.dot(c.t1), y2 = l2 - c.mass_t * u.dot(c.t2);
+  const double radius = c.friction * std::max(0.0, l_n), length = std::sqrt(y1 * y1 + y2 * y2);
+  if (length > radius) {
+    y1 *= radius / length;
+    y2 *= radius / length;
+  }
+  const double r_t = std::sqrt((y1 - l1) * (y1 - l1) + (y2 - l2) * (y2 - l2)) / c.mass_t;
+  return std::max(r_n, r_t) + 0.0 * (u.sum() + c.lambda.sum() + r_n + r_t);
+}
+
+double row_residual(const ContactProblem& problem, const ScalarRow& row) {
+  if (row.mass == 0.0) return 0.0;
+  const double u = row.n.dot(relative_velocity(problem.bodies[row.a], problem.bodies[row.b], row.rA, row.rB));
+  const double r = row.is_soft()
+                       ? std::abs(row.lambda + row.softness * (u + row.bias)) / (row.mass + row.softness)
+                       : std::abs(std::max(row.lower, row.lambda - row.mass * (u - row.bound)) - row.lambda) / row.mass;
+  return r + 0.0 * (u + row.lambda);
+}
+
+}  // namespace
+
+void set_tangents(PointContact& contact) {
+  const Vec3& n = contact.n;
+  // 1/sqrt(3): at least one component of a unit vector is that large, so neither branch divides by a small number.
+  constexpr double kLarge = 0.57735;
+  contact.t1 = std::abs(n.x()) > kLarge ? Vec3(n.y(), -n.x(), 0.0) : Vec3(0.0, n.z(), -n.y());
+  contact.t1 /= std::sqrt(contact.t1.squaredNorm());
+  contact.t2 = n.cross(contact.t1);
+}
+
+Vec3 relative_velocity(const SolverBody& A, const SolverBody& B, const Vec3& rA, const Vec3& rB) {
+  return B.v + B.w.cross(rB) - A.v - A.w.cross(rA);
+}
+
+Vec3 relative_start_velocity(const SolverBody& A, const SolverBody& B, const Vec3& rA, const Vec3& rB) {
+  return B.v0 + B.w0.cross(rB) - A.v0 - A.w0.cross(rA);
+}
+
+void prepare(ContactProblem& problem, const BoundSettings& settings) {
+  for (PointContact& c : problem.contacts) {
+    update_masses(problem.bodies, c);
+    c.un0 = c.n.dot(relative_start_velocity(problem.bodies[c.a], problem.bodies[c.b], c.rA, c.rB));
+    c.bound = bound_of(c.separation, problem.h, settings);
+  }
+  for (ScalarRow& row : problem.rows) {
+    const double k = inverse_mass_along(problem.bodies[row.a], row.rA, row.n, row.n) +
+                     inverse_mass_along(problem.bodies[row.b], row.rB, row.n, row.n);
+    row.mass = k > 0.0 ? 1.0 / k : 0.0;
+  }
+}
+
+void apply_stored_impulses(ContactProblem& problem) {
+  for (const ScalarRow& row : problem.rows) {
+    apply_impulse(problem.bodies[row.a], problem.bodies[row.b], row.rA, row.rB, row.lambda * row.n);
+  }
+  for (const PointContact& c : problem.contacts) {
+    const Vec3 impulse = c.lambda.x() * c.n + c.lambda.y() * c.t1 + c.lambda.z() * c.t2;
+    apply_impulse(problem.bodies[c.a], problem.bodies[c.b], c.rA, c.rB, impulse);
+  }
+}
+
+double compute_residual(const ContactProblem& problem) {
+  // max() drops a NaN, so 0 * (every term) is summed up beside it: 0 if all are finite, else NaN.
+  double largest = 0.0, poison = 0.0;
+  const auto take = [&](double r) {
+    largest = std::max(largest, r);
+    poison += 0.0 * r;
+  };
+  for (const ScalarRow& row : problem.rows) take(row_residual(problem, row));
+  for (const PointContact& c : problem.contacts) take(contact_residual(problem, c));
+  return largest + poison;
+}
+
+ContactProblem::Drift choose_drift(const ContactProblem& problem) {
+  constexpr double kSlack = 1e-8;  // [m] far below what can be seen, far above the rounding of a gap
+  const auto stays_open = [&](std::uint32_t a, std::uint32_t b, const Vec3& n, const Vec3& rA, const Vec3& rB,
+                              double gap) {
+    const SolverBody &A = problem.bodies[a], &B = problem.bodies[b];
+    const Vec3 mean = 0.5 * (relative_start_velocity(A, B, rA, rB) + relative_velocity(A, B, rA, rB));
+    return gap + problem.h * n.dot(mean) >= std::min(gap, 0.0) - kSlack;
+  };
+  for (const PointContact& c : problem.contacts) {
+    if (!stays_open(c.a, c.b, c.n, c.rA, c.rB, c.separation)) return ContactProblem::Drift::end;
+  }
+  for (const ScalarRow& row : problem.rows) {
+    if (!row.is_soft() && !stays_open(row.a, row.b, row.n, row.rA, row.rB, row.gap)) {
+      return ContactProblem::Drift::end;
+    }
+  }
+  return ContactProblem::Drift::average;
+}
+
+}  // namespace tumble

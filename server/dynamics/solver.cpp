@@ -1,0 +1,38 @@
+// The names of the solvers and their dispatch.
+#include "dynamics/solver.h"
+
+#include <array>
+
+namespace tumble {
+namespace {
+
+struct Rival {
+  Solver solver;
+  const char* name;
+  SolveFunction solve;
+};
+
+constexpr std::array<Rival, 3> kRivals{{
+    {Solver::course_impulse, "course_impulse", &solve_course_impulse},
+    {Solver::pgs, "pgs", &solve_pgs},
+    {Solver::soft_step, "soft_step", &solve_soft_step},
+}};
+
+const Rival& rival(Solver solver) { return kRivals[static_cast<std::size_t>(solver)]; }
+
+static_assert(kRivals[static_cast<std::size_t>(Solver::soft_step)].solver == Solver::soft_step);
+
+}  // namespace
+
+SolveFunction solve_function(Solver solver) { return rival(solver).solve; }
+
+const char* solver_name(Solver solver) { return rival(solver).name; }
+
+std::optional<Solver> solver_from_name(std::string_view name) {
+  for (const Rival& r : kRivals) {
+    if (name == r.name) return r.solver;
+  }
+  return std::nullopt;
+}
+
+}  // namespace tumble

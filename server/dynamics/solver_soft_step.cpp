@@ -1,0 +1,235 @@
+// Sub-steps with soft contacts and a relax pass (TGS-soft; Macklin et al. 2019 "Small steps", Catto 2023 "Solver2D").
+// Each sub-step: forces, stored impulses, one sweep with the overlap as a spring of given frequency and damping, move,
+// one sweep without it, so that the push leaves no speed behind. Directions and arms stay those of the start pose.
+// Restitution is not in here: resolve_impacts comes before. Stored impulses are those of whole steps: the sum over the
+// sub-steps, so v = v* + M^-1 J^T lambda holds as for every solver.
+#include "dynamics/force_spring.h"
+#include "dynamics/solver.h"
+#include "dynamics/sweep.h"
+#include "math/rotation.h"
+
+namespace tumble {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+constexpr double kPushSpeed = 3.0;  // [m/s] as BoundSettings::push_speed by default
+
+/// A damped spring of the contact's own mass, discretised implicitly.
+struct Softness {
+  double rate, scale, give;  // [1/s], 1, 1
+
+  Softness(double frequency, double damping, double h) {
+    const double omega = 2.0 * kPi * frequency;
+    const double a1 = 2.0 * damping + h * omega, a2 = h * omega * a1, a3 = 1.0 / (1.0 + a2);
+    rate = omega / a1;
+    scale = a2 * a3;
+    give = a3;
+  }
+};
+
+/// Contact frequency 30 Hz, but at most 1/8 of the sub-step rate; overdamped. Against immovable bodies twice as stiff.
+struct SoftPair {
+  Softness between, against_fixed;
+  explicit SoftPair(double h)
+      : between(std::min(30.0, 0.125 / h), 10.0, h), against_fixed(2.0 * std::min(30.0, 0.125 / h), 5.0, h) {}
+};
+
+class SoftStep {
+ public:
+  SoftStep(ContactProblem& problem, int sub_steps);
+  void solve();
+
+ private:
+  struct BodyPath {
+    Twist kick;                        // one sub-step of forces
+    Vec3 moved = Vec3::Zero();         // since the start of the step
+    Vec3 turned = Vec3::Zero();        // sum of h w
+    Quat rotation = Quat::Identity();  // product of the turns
+  };
+  struct ContactPath {
+    double base;  // gap - n . (rB - rA)
+    Vec3 rA, rB;
+    double l_n = 0.0, l_1 = 0.0, l_2 = 0.0;  // sums over the sub-steps
+  };
+  struct RowPath {
+    double moved = 0.0;  // along n
+    double l = 0.0;
+  };
+
+  void kick_and_warm_start();
+  void sweep(bool push);
+  void soften_rows();
+  void move();
+  void add_impulses();
+  void store();
+  double gap(const SweptContact& c, const ContactPath& path) const;
+
+  ContactProblem& problem_;
+  const int sub_steps_;
+  const double h_;
+  const SoftPair soft_;
+  /// Nothing can close within the step: the midpoint rule of the springs may be followed exactly.
+  const ContactProblem::Drift drift_;
+  Sweep sweep_;
+  std::vector<BodyPath> bodies_;
+  std::vector<ContactPath> contacts_;
+  std::vector<RowPath> rows_;
+  std::vector<Twist> start_;  // of the sub-step
+};
+
+bool only_springs(const ContactProblem& problem) {
+  return problem.contacts.empty() &&
+         std::all_of(problem.rows.begin(), problem.rows.end(), [](const ScalarRow& row) { return row.is_soft(); });
+}
+
+SoftStep::SoftStep(ContactProblem& problem, int sub_steps)
+    : problem_(problem),
+      sub_steps_(sub_steps),
+      h_(problem.h / sub_steps),
+      soft_(h_),
+      drift_(only_springs(problem) ? ContactProblem::Drift::average : ContactProblem::Drift::end),
+      sweep_(make_sweep(problem)),
+      rows_(sweep_.rows.size()) {
+  const double share = 1.0 / sub_steps;
+  for (std::size_t i = 0; i < problem.bodies.size(); ++i) {
+    const SolverBody& body = problem.bodies[i];
+    bodies_.push_back({{share * (body.v - body.v0), share * (body.w - body.w0)}});
+    sweep_.twists[i] = {body.v0, body.w0};
+  }
+  for (const PointContact& c : problem.contacts) {
+    if (c.mass_n > 0.0) contacts_.push_back({c.separation - c.n.dot(c.rB - c.rA), c.rA, c.rB});
+  }
+  for (SweptContact& c : sweep_.contacts) {
+    c.l_n *= share;
+    c.l_1 *= share;
+    c.l_2 *= share;
+  }
+  for (SweptRow& row : sweep_.rows) row.l *= share;
+}
+
+void SoftStep::kick_and_warm_start() {
+  start_ = sweep_.twists;
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    sweep_.twists[i].v += bodies_[i].kick.v;
+    sweep_.twists[i].w += bodies_[i].kick.w;
+  }
+  for (const SweptRow& row : sweep_.rows) {
+    row.n.apply(row.l, row.inv_mass_A, row.inv_mass_B, sweep_.twists[row.a], sweep_.twists[row.b]);
+  }
+  for (const SweptContact& c : sweep_.contacts) {
+    Twist &A = sweep_.twists[c.a], &B = sweep_.twists[c.b];
+    c.n.apply(c.l_n, c.inv_mass_A, c.inv_mass_B, A, B);
+    c.t1.apply(c.l_1, c.inv_mass_A, c.inv_mass_B, A, B);
+    c.t2.apply(c.l_2, c.inv_mass_A, c.inv_mass_B, A, B);
+  }
+}
+
+/// Springs from their length at the start of the sub-step; ropes from the way that is left.
+void SoftStep::soften_rows() {
+  auto swept = sweep_.rows.begin();
+  auto path = rows_.begin();
+  for (const ScalarRow& given : problem_.rows) {
+    if (given.mass == 0.0) continue;
+    if (given.is_soft()) {
+      ScalarRow row = given;
+      soften_row(row, h_, given.extension + path->moved, swept->n.velocity(start_[swept->a], start_[swept->b]), drift_);
+      swept->softness = row.softness;
+      swept->bias = row.bias;
+    } else if (given.bound <= 0.0) {
+      swept->bound = -std::max(0.0, -given.bound * problem_.h + path->moved) / h_;
+    }
+    ++swept;
+    ++path;
+  }
+}
+
+double SoftStep::gap(const SweptContact& c, const ContactPath& path) const {
+  const BodyPath &A = bodies_[c.a], &B = bodies_[c.b];
+  return c.n.d.dot(B.moved + B.rotation * path.rB - A.moved - A.rotation * path.rA) + path.base;
+}
+
+void SoftStep::sweep(bool push) {
+  for (SweptRow& row : sweep_.rows) visit_row(row, sweep_.twists[row.a], sweep_.twists[row.b]);
+  for (std::size_t i = 0; i < contacts_.size(); ++i) {
+    SweptContact& c = sweep_.contacts[i];
+    const double s = gap(c, contacts_[i]);
+    NormalRule rule{.push = 0.0};
+    if (s > 0.0) {
+      rule.push = s / h_;
+    } else if (push) {
+      const bool fixed = c.inv_mass_A == 0.0 || c.inv_mass_B == 0.0;
+      const Softness& soft = fixed ? soft_.against_fixed : soft_.between;
+      rule = {.push = std::max(soft.scale * soft.rate * s, -kPushSpeed), .scale = soft.scale, .give = soft.give};
+    }
+    Twist &A = sweep_.twists[c.a], &B = sweep_.twists[c.b];
+    visit_normal(c, rule, A, B);
+    visit_friction(c, A, B);
+  }
+}
+
+void SoftStep::move() {
+  const double before = drift_ == ContactProblem::Drift::average ? 0.5 : 0.0, after = 1.0 - before;
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    BodyPath& path = bodies_[i];
+    path.moved += h_ * (before * start_[i].v + after * sweep_.twists[i].v);
+    const Vec3 turn = h_ * (before * start_[i].w + after * sweep_.twists[i].w);
+    path.turned += turn;
+    const Quat half(0.0, 0.5 * turn.x(), 0.5 * turn.y(), 0.5 * turn.z());
+    const Quat change = half * path.rotation;
+    path.rotation = normalized(Quat(path.rotation.coeffs() + change.coeffs()));
+  }
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    const SweptRow& row = sweep_.rows[i];
+    rows_[i].moved += h_ * (before * row.n.velocity(start_[row.a], start_[row.b]) +
+                            after * row.n.velocity(sweep_.twists[row.a], sweep_.twists[row.b]));
+  }
+}
+
+void SoftStep::add_impulses() {
+  for (std::size_t i = 0; i < contacts_.size(); ++i) {
+    contacts_[i].l_n += sweep_.contacts[i].l_n;
+    contacts_[i].l_1 += sweep_.contacts[i].l_1;
+    contacts_[i].l_2 += sweep_.contacts[i].l_2;
+  }
+  for (std::size_t i = 0; i < rows_.size(); ++i) rows_[i].l += sweep_.rows[i].l;
+}
+
+void SoftStep::store() {
+  for (std::size_t i = 0; i < contacts_.size(); ++i) {
+    sweep_.contacts[i].l_n = contacts_[i].l_n;
+    sweep_.contacts[i].l_1 = contacts_[i].l_1;
+    sweep_.contacts[i].l_2 = contacts_[i].l_2;
+  }
+  for (std::size_t i = 0; i < rows_.size(); ++i) sweep_.rows[i].l = rows_[i].l;
+  store_impulses(sweep_, problem_);
+  apply_stored_impulses(problem_);
+  const double before = drift_ == ContactProblem::Drift::average ? 0.5 : 0.0, after = 1.0 - before;
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    SolverBody& body = problem_.bodies[i];
+    if (body.inv_mass == 0.0) continue;
+    body.shift = bodies_[i].moved - problem_.h * (before * body.v0 + after * body.v);
+    body.turn = bodies_[i].turned - problem_.h * (before * body.w0 + after * body.w);
+  }
+  problem_.drift = drift_;
+}
+
+void SoftStep::solve() {
+  for (int i = 0; i < sub_steps_; ++i) {
+    kick_and_warm_start();
+    soften_rows();
+    sweep(true);
+    move();
+    sweep(false);
+    add_impulses();
+  }
+  store();
+}
+
+}  // namespace
+
+SolverReport solve_soft_step(ContactProblem& problem, const SolverSettings& settings) {
+  SoftStep(problem, settings.sub_steps).solve();
+  return {.sweeps = 2 * settings.sub_steps, .residual = compute_residual(problem), .accepted = false};
+}
+
+}  // namespace tumble

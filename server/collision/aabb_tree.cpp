@@ -51,7 +51,9 @@ void AabbTree::query(const Aabb& bounds, std::vector<std::uint32_t>& users) cons
   }
 }
 
-int AabbTree::height() const { return root_ == kNone ? -1 : at(root_).height; }
+int AabbTree::height() const {
+  return root_ == kNone ? -1 : at(root_).height;
+}
 
 AabbTree::Leaf AabbTree::allocate() {
   if (free_ == kNone) {

@@ -27,7 +27,8 @@ void BroadPhase::add(std::uint32_t index, const Aabb& tight, double fat_margin, 
 void BroadPhase::remove(std::uint32_t index) {
   Proxy& proxy = proxies_[index];
   tree_of(proxy).remove(proxy.leaf);
-  proxy.leaf = AabbTree::kNone;  // `dirty` stays: it says that the index is in the list, which update_pairs cleans
+  proxy.leaf =
+      AabbTree::kNone;  // `dirty` stays: it says that the index is in the list, which update_pairs cleans
 }
 
 bool BroadPhase::move(std::uint32_t index, const Aabb& tight, double fat_margin, const Vec3& displacement) {
@@ -58,7 +59,9 @@ void BroadPhase::update_pairs(std::vector<GeometryPair>& pairs) {
   pairs.erase(std::unique(pairs.begin() + first, pairs.end()), pairs.end());
 }
 
-bool BroadPhase::overlaps(GeometryPair pair) const { return fat_bounds(pair.a).overlaps(fat_bounds(pair.b)); }
+bool BroadPhase::overlaps(GeometryPair pair) const {
+  return fat_bounds(pair.a).overlaps(fat_bounds(pair.b));
+}
 
 const Aabb& BroadPhase::fat_bounds(std::uint32_t index) const {
   const Proxy& proxy = proxies_[index];

@@ -76,7 +76,8 @@ TEST(AabbTree, AnswersEqualBruteForceThroughARandomHistory) {
     if (checked.boxes.empty() || action < 4) {
       checked.insert(next++, random_box(random, 10.0, 3.0));
     } else {
-      const auto chosen = std::next(checked.boxes.begin(), static_cast<long>(random() % checked.boxes.size()));
+      const auto chosen =
+          std::next(checked.boxes.begin(), static_cast<long>(random() % checked.boxes.size()));
       if (action < 7) {
         checked.move(chosen->first, random_box(random, 10.0, 3.0));
       } else {

@@ -1,0 +1,12 @@
+// <tumble:spring> and <tumble:rope>: connections between points of bodies, or of a body and the world.
+#pragma once
+
+#include "scene/scene.h"
+#include "scene/sdf_element.h"
+
+namespace tumble {
+
+/// Reads the springs and ropes of a world whose bodies are already in `scene`.
+void read_connections(SdfElement& world, Scene& scene);
+
+}  // namespace tumble

@@ -1,0 +1,37 @@
+// <physics> of SDF and our own options in it: one list of the options' names, for the reader and the writer.
+#pragma once
+
+#include "scene/sdf_element.h"
+#include "world/options.h"
+
+namespace tumble {
+
+/// Sets what <physics> and its tumble: options say; the rest of `options` stays.
+void read_physics(SdfElement& physics, Options& options);
+
+/// Calls visit(name, field) for every plain option; in a file its tag is tumble:name. The fields are double, int, bool.
+template <class OptionsType, class Visit>
+void for_each_option(OptionsType& options, Visit&& visit) {
+  visit("contact_margin", options.contact_margin);
+  visit("fat_margin", options.fat_margin);
+  visit("use_motion_bound", options.narrow_phase.use_motion_bound);
+  visit("use_cached_axis", options.narrow_phase.use_cached_axis);
+  visit("use_gjk", options.narrow_phase.use_gjk);
+  visit("max_sweeps", options.solver_settings.max_sweeps);
+  visit("tolerance", options.solver_settings.tolerance);
+  visit("sub_steps", options.solver_settings.sub_steps);
+  visit("slop", options.bounds.slop);
+  visit("push_fraction", options.bounds.push_fraction);
+  visit("push_speed", options.bounds.push_speed);
+  visit("restitution_threshold", options.restitution_threshold);
+  visit("max_impacts", options.max_impacts);
+  visit("warm_start", options.warm_start);
+  visit("rest_residual", options.rest.residual);
+  visit("rest_speed", options.rest.speed);
+  visit("rest_acceleration", options.rest.acceleration);
+  visit("calm_speed", options.rest.calm_speed);
+  visit("calm_time", options.rest.calm_time);
+  visit("skip_resting", options.skip_resting);
+}
+
+}  // namespace tumble

@@ -62,18 +62,17 @@ void read_inertial(SdfElement& inertial, BodyDefinition& body) {
   if (automatic != "true" && automatic != "false") {
     inertial.fail_attribute("auto", "must be true or false", automatic);
   }
-  const std::optional<double> mass =
-      mass_element ? std::optional(mass_element->to_number(Range::positive)) : std::nullopt;
+  const double mass = mass_element ? mass_element->to_number(Range::positive) : 0.0;
   if (automatic == "true") {
-    if (mass || moments_element || pose_element) inertial.fail("auto=\"true\" leaves no room for values");
+    if (mass_element || moments_element || pose_element) inertial.fail("auto=\"true\" leaves no room for values");
   } else if (moments_element) {
-    if (!mass) inertial.fail("has an <inertia>, but no <mass>");
+    if (!mass_element) inertial.fail("has an <inertia>, but no <mass>");
     const Pose X_LI = pose_element ? read_pose(*pose_element) : Pose{};
-    body.inertia = Inertia{*mass, X_LI.p, rotated(X_LI.q, read_moments(*moments_element))};
+    body.inertia = Inertia{mass, X_LI.p, rotated(X_LI.q, read_moments(*moments_element))};
     if (const std::string reason = check_inertia(*body.inertia); !reason.empty()) moments_element->fail(reason);
   } else {
     if (pose_element) pose_element->fail("needs an <inertia> beside it");
-    if (mass) body.inertia = scaled_inertia(inertial, body, *mass);
+    if (mass_element) body.inertia = scaled_inertia(inertial, body, mass);
   }
   inertial.finish();
 }

@@ -85,7 +85,7 @@ void write_shape(tinyxml2::XMLPrinter& out, const Capsule& capsule) {
 void write_shape(tinyxml2::XMLPrinter& out, const HullPointer& hull) {
   Tag shape(out, "tumble:convex_hull");
   std::string points;
-  for (const Vec3& p : hull->vertices) points += (points.empty() ? "" : "  ") + to_text(p);
+  for (const Vec3& p : hull->vertices) points.append(points.empty() ? "" : "  ").append(to_text(p));
   write(out, "tumble:points", points);
 }
 
@@ -115,7 +115,7 @@ void write_visual(tinyxml2::XMLPrinter& out, const GeometryDefinition& geometry)
   write_geometry(out, geometry);
   Tag material(out, "material");
   std::string color;
-  for (const float channel : geometry.color) color += (color.empty() ? "" : " ") + to_shortest_text(channel);
+  for (const float channel : geometry.color) color.append(color.empty() ? "" : " ").append(to_shortest_text(channel));
   write(out, "diffuse", color);
 }
 

@@ -1,0 +1,41 @@
+// What each client's latest commands came to, so that a repeated one is answered again and not applied again. Bounded:
+// a window of sequences per client, and the client longest unheard makes room for a new one.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <vector>
+
+#include "net/acknowledgement.h"
+
+namespace tumble {
+
+class ClientHistory {
+ public:
+  static constexpr std::size_t kMaxClients = 256;
+
+  enum class Novelty { fresh, repeated, too_old };
+
+  /// Is (client, sequence > 0) new? A fresh one is entered as queued.
+  Novelty enter(std::int64_t client, std::int64_t sequence);
+  /// The outcome so far of a command that was entered; null once it left the window.
+  Outcome* find(std::int64_t client, std::int64_t sequence);
+  std::size_t size() const { return clients_.size(); }
+
+ private:
+  struct Entry {
+    std::int64_t sequence = 0;  // 0: empty
+    Outcome outcome;
+  };
+  struct Client {
+    std::int64_t highest = 0;
+    std::uint64_t heard = 0;       // by order of arrival
+    std::vector<Entry> window;     // at sequence modulo kSequenceWindow
+  };
+  Client& find_or_make(std::int64_t client);
+
+  std::map<std::int64_t, Client> clients_;
+  std::uint64_t arrivals_ = 0;
+};
+
+}  // namespace tumble

@@ -1,0 +1,118 @@
+// See command_inbox.h. A fresh command is entered in the history before anything else is said about it, so that every
+// later copy gets the same answer.
+#include "net/command_inbox.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+#include "net/command_check.h"
+
+namespace tumble {
+
+std::uint64_t InboxCounters::damaged() const {
+  return std::accumulate(malformed.begin(), malformed.end(), nameless);
+}
+
+void CommandInbox::set_now(std::int64_t session, std::int64_t step) {
+  session_ = session;
+  step_ = step;
+}
+
+void CommandInbox::receive_force(Bytes bytes) { receive<force_command_t>(bytes); }
+
+void CommandInbox::receive_control(Bytes bytes) { receive<control_t>(bytes); }
+
+template <typename Message>
+void CommandInbox::receive(Bytes bytes) {
+  Message message{};
+  const Malformed reason = decode(bytes, message);
+  if (reason == Malformed::none) return admit(message);
+  ++counters_.malformed[static_cast<std::size_t>(reason)];
+  // Not entered in the history: the sound original of a damaged copy may still come.
+  const Sender sender = read_sender(bytes);
+  if (sender.client != 0 && sender.sequence > 0 && history_.find(sender.client, sender.sequence) == nullptr) {
+    answer(sender.client, sender.sequence, {.status = Status::malformed, .detail = malformed_text(reason)});
+  }
+}
+
+template <typename Message>
+void CommandInbox::admit(const Message& message) {
+  const std::int64_t client = message.client, sequence = message.sequence;
+  if (client == 0 || sequence < 1) {
+    ++counters_.nameless;
+    return;
+  }
+  switch (history_.enter(client, sequence)) {
+    case ClientHistory::Novelty::too_old:
+      ++counters_.refused;
+      return answer(client, sequence, {.status = Status::too_old, .detail = status_text(Status::too_old)});
+    case ClientHistory::Novelty::repeated:
+      ++counters_.repeated;
+      return answer(client, sequence, *history_.find(client, sequence));
+    case ClientHistory::Novelty::fresh: break;
+  }
+  const std::int64_t start = std::max(message.start_step, step_);
+  Outcome outcome = check_values(message);
+  if (message.session != 0 && message.session != session_) {
+    outcome = {.status = Status::wrong_session, .detail = fmt::format("the session is {}", session_)};
+  } else if (message.expiry_step != 0 && message.expiry_step < start) {
+    outcome = {.status = Status::expired, .detail = fmt::format("it could act at step {} at the earliest", start)};
+  } else if (outcome.status == Status::applied && pending_.size() >= kMaxPending) {
+    outcome = {.status = Status::queue_full, .detail = fmt::format("{} commands wait", pending_.size())};
+  }
+  if (outcome.status != Status::applied) return settle(client, sequence, std::move(outcome));
+  pending_.emplace(Key{start, client, sequence}, Command{client, sequence, message.expiry_step, message});
+  Outcome& noted = *history_.find(client, sequence);
+  noted.step = start;
+  if (start > step_) answer(client, sequence, noted);
+}
+
+std::vector<Command> CommandInbox::take_due() {
+  const auto end = pending_.upper_bound(
+      Key{step_, std::numeric_limits<std::int64_t>::max(), std::numeric_limits<std::int64_t>::max()});
+  std::vector<Command> due;
+  for (auto it = pending_.begin(); it != end; ++it) {
+    Command& command = it->second;
+    if (command.expiry_step != 0 && command.expiry_step < step_) {
+      settle(command.client, command.sequence,
+             {.status = Status::expired, .detail = fmt::format("the step is already {}", step_)});
+    } else {
+      due.push_back(std::move(command));
+    }
+  }
+  pending_.erase(pending_.begin(), end);
+  // Those that waited for an earlier step act now as well: one order for all.
+  std::sort(due.begin(), due.end(), [](const Command& a, const Command& b) {
+    return std::tie(a.client, a.sequence) < std::tie(b.client, b.sequence);
+  });
+  return due;
+}
+
+void CommandInbox::settle(const Command& command, Outcome outcome) {
+  settle(command.client, command.sequence, std::move(outcome));
+}
+
+void CommandInbox::settle(std::int64_t client, std::int64_t sequence, Outcome outcome) {
+  ++(outcome.status == Status::applied ? counters_.applied : counters_.refused);
+  answer(client, sequence, outcome);
+  if (Outcome* noted = history_.find(client, sequence)) *noted = std::move(outcome);
+}
+
+void CommandInbox::cancel_pending() {
+  for (const auto& [key, command] : std::exchange(pending_, {})) {
+    settle(command.client, command.sequence,
+           {.status = Status::cancelled, .detail = status_text(Status::cancelled)});
+  }
+}
+
+void CommandInbox::answer(std::int64_t client, std::int64_t sequence, const Outcome& outcome) {
+  answers_.push_back({client, sequence, outcome});
+}
+
+std::vector<Acknowledgement> CommandInbox::take_answers() { return std::exchange(answers_, {}); }
+
+}  // namespace tumble

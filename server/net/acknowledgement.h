@@ -17,7 +17,7 @@ struct Outcome {
   Status status = Status::applied;
   std::int64_t step = -1;          ///< It acts from this step on; -1 if refused.
   std::int32_t body = -1, generation = -1;
-  std::string detail;              ///< For people; empty if all is well.
+  std::string detail{};            ///< For people; empty if all is well.
 };
 
 struct Acknowledgement {

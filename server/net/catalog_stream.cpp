@@ -2,6 +2,7 @@
 #include "net/catalog_stream.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace tumble {
 namespace {

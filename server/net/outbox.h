@@ -16,6 +16,7 @@
 
 #include "net/clock.h"
 #include "net/state_publisher.h"
+#include "protocol/codec.h"
 
 namespace tumble {
 

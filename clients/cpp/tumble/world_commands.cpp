@@ -1,0 +1,123 @@
+// The commands of a client, see world.h: filled in, numbered, and handed to the outbox.
+#include <algorithm>
+#include <chrono>
+
+#include "tumble/world.h"
+
+namespace tumble::client {
+namespace {
+
+std::int64_t wall_clock() {
+  using namespace std::chrono;
+  return duration_cast<microseconds>(system_clock::now().time_since_epoch()).count();
+}
+
+}  // namespace
+
+template <typename Message>
+std::int64_t World::post(Message& command, std::string_view suffix) {
+  if (!heartbeat_) wait_for_server(time_limit());
+  command.utime = wall_clock();
+  // Both tell the session; after a reset the state stream has it first, twice a second the heartbeat.
+  command.session = picture_.session() != 0 ? picture_.session() : heartbeat_->session;
+  command.client = outbox_.client();
+  command.sequence = outbox_.next_sequence();
+  std::vector<std::uint8_t> bytes;
+  encode(command, bytes);
+  outbox_.add(command.sequence, channel_name(name(), suffix), std::move(bytes), Outbox::Clock::now());
+  send_due();
+  return command.sequence;
+}
+
+std::int64_t World::send(force_command_t command) {
+  return post(command, kForceSuffix);
+}
+std::int64_t World::send(control_t command) {
+  return post(command, kControlSuffix);
+}
+
+control_t World::make_control(std::int8_t verb) const {
+  control_t command{};
+  command.verb = verb;
+  command.orientation[0] = 1.0;
+  return command;
+}
+
+control_t World::make_control(std::int8_t verb, const std::string& name) {
+  const Body& body = wait_for_body(name, time_limit());
+  control_t command = make_control(verb);
+  command.body = body.id;
+  command.generation = body.generation;
+  return command;
+}
+
+Answer World::push(const Push& push) {
+  const Body& body = wait_for_body(push.body, time_limit());
+  force_command_t command{};
+  command.start_step = push.start_step;
+  command.body = body.id;
+  command.generation = body.generation;
+  command.frame = static_cast<std::int8_t>(push.frame);
+  std::copy(push.force.begin(), push.force.end(), command.force);
+  std::copy(push.torque.begin(), push.torque.end(), command.torque);
+  std::copy(push.point.begin(), push.point.end(), command.point);
+  command.duration = push.seconds;
+  return wait(send(command));
+}
+
+Answer World::spawn(const Spawn& spawn) {
+  control_t command = make_control(control_t::VERB_SPAWN);
+  command.name = spawn.name;
+  command.body_type = spawn.body_type;
+  command.shape_type = spawn.shape_type;
+  std::copy(spawn.size.begin(), spawn.size.end(), command.size);
+  command.mass = spawn.mass;
+  std::copy(spawn.position.begin(), spawn.position.end(), command.position);
+  std::copy(spawn.orientation.begin(), spawn.orientation.end(), command.orientation);
+  std::copy(spawn.velocity.begin(), spawn.velocity.end(), command.velocity);
+  std::copy(spawn.angular_velocity.begin(), spawn.angular_velocity.end(), command.angular_velocity);
+  command.friction = spawn.friction;
+  command.restitution = spawn.restitution;
+  std::copy(spawn.color.begin(), spawn.color.end(), command.color);
+  return send_and_wait(command);
+}
+
+Answer World::remove(const std::string& body) {
+  return send_and_wait(make_control(control_t::VERB_REMOVE, body));
+}
+
+Answer World::set_motion(const std::string& body, const Motion& motion) {
+  control_t command = make_control(control_t::VERB_SET_STATE, body);
+  std::copy(motion.position.begin(), motion.position.end(), command.position);
+  std::copy(motion.orientation.begin(), motion.orientation.end(), command.orientation);
+  std::copy(motion.velocity.begin(), motion.velocity.end(), command.velocity);
+  std::copy(motion.angular_velocity.begin(), motion.angular_velocity.end(), command.angular_velocity);
+  return send_and_wait(command);
+}
+
+Answer World::watch(const std::string& body, bool on) {
+  return send_and_wait(make_control(on ? control_t::VERB_WATCH : control_t::VERB_UNWATCH, body));
+}
+
+Answer World::stream_contacts(bool on) {
+  return send_and_wait(make_control(on ? control_t::VERB_CONTACTS_ON : control_t::VERB_CONTACTS_OFF));
+}
+
+Answer World::pause() {
+  return send_and_wait(make_control(control_t::VERB_PAUSE));
+}
+Answer World::resume() {
+  return send_and_wait(make_control(control_t::VERB_RESUME));
+}
+
+Answer World::step(std::int64_t count) {
+  control_t command = make_control(control_t::VERB_STEP);
+  command.count = count;
+  return send_and_wait(command);
+}
+
+Answer World::reset() {
+  return send_and_wait(make_control(control_t::VERB_RESET));
+}
+
+}  // namespace tumble::client

@@ -74,7 +74,7 @@ def test_command_line(start, wire):
     start(SCENES / "free.sdf")
     wire.next("HEARTBEAT", 10.0)
     for arguments in (["pause"], ["step", "5"], ["reset"], ["resume"], ["list"],
-                      ["spawn", "new", "--box", "1", "1", "1", "--at", "0", "0", "9"], ["remove", "new"],
+                      ["spawn", "box", "--name", "new", "--size", "1", "1", "1", "--at", "0", "0", "9"], ["remove", "new"],
                       ["torque", "box", "--torque", "0", "0", "1", "--seconds", "0.1"]):
         done = run_tumble(*arguments)
         assert done.returncode == 0, (arguments, done.stdout, done.stderr)

@@ -15,7 +15,8 @@ struct GjkAnswer {
   };
   Kind kind;
   Vec3 axis_A;  ///< Unit, from A to B, in A's frame; the best direction seen, also when not apart.
-  double gap;   ///< Separation along axis_A [m], by true supports.
+  double gap;   ///< Separation along axis_A by true supports, less its rounding error [m].
+  bool budget_hit = false;
 };
 
 /// Support-function calls after which libccd is made to stop (each of its loops ends on a degenerate point). Its

@@ -48,4 +48,7 @@ double bounding_radius(const Shape& shape);
 /// mirrored calls give mirrored points. Not for half-spaces.
 Vec3 support(const Shape& shape, const Vec3& d_S);
 
+/// Distance between the planes normal to n_A (unit, from A to B) that touch A and B at X_AB [m]; > 0: n_A separates.
+double separation_along(const Shape& a, const Shape& b, const Mat3& R_AB, const Vec3& p_AB, const Vec3& n_A);
+
 }  // namespace tumble

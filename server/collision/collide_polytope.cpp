@@ -1,0 +1,127 @@
+// The winning facet of two polytopes -> manifold: a face clips the other body's most opposed face, edges meet in a
+// point. See collide_polytope.h.
+#include "collision/collide_polytope.h"
+
+#include "collision/clip.h"
+#include "collision/facet_search.h"
+#include "collision/segment_contact.h"
+#include "math/rotation.h"
+
+namespace tumble {
+namespace {
+
+/// A face and the pose of its body in A.
+struct PlacedFace {
+  const Polytope& body;
+  const ConvexHull::Face& face;
+  const Mat3& R;
+  const Vec3& p;
+
+  int count() const { return std::min(static_cast<int>(face.count), kMaxFaceVertices); }
+  /// Vertex k of the loop, which is thinned to `count()` evenly spread ones from vertex `first` on.
+  Vec3 vertex_A(int k, std::size_t first) const {
+    const auto loop = body.loop(face);
+    const std::size_t step = static_cast<std::size_t>(k) * loop.size() / static_cast<std::size_t>(count());
+    return R * body.vertices[loop[(first + step) % loop.size()]] + p;
+  }
+};
+
+std::size_t lowest_along(const PlacedFace& placed, const Vec3& n_A) {
+  const auto loop = placed.body.loop(placed.face);
+  const Vec3 n = placed.R.transpose() * n_A;
+  std::size_t lowest = 0;
+  for (std::size_t i = 1; i < loop.size(); ++i) {
+    if (n.dot(placed.body.vertices[loop[i]]) < n.dot(placed.body.vertices[loop[lowest]])) lowest = i;
+  }
+  return lowest;
+}
+
+Manifold clip_faces(const PlacedFace& reference, const PlacedFace& incident, const Vec3& normal_A, double margin,
+                    std::uint32_t faces) {
+  FacePlane plane;
+  plane.n_A = reference.R * reference.face.normal;
+  plane.origin_A = reference.vertex_A(0, 0);
+  plane.u_A = direction_or(reference.vertex_A(1, 0) - plane.origin_A, perpendicular_to(plane.n_A));
+  plane.v_A = plane.n_A.cross(plane.u_A);
+
+  ClipPolygon polygon;
+  const bool thinned = incident.count() < static_cast<int>(incident.face.count);
+  const std::size_t first = thinned ? lowest_along(incident, plane.n_A) : 0;
+  for (int k = 0; k < incident.count(); ++k) polygon.add_vertex(plane.to_plane(incident.vertex_A(k, first)));
+  polygon.close();
+
+  const double width = std::min(face_width(reference.body, reference.face), face_width(incident.body, incident.face));
+  const ContactTolerance tolerance = ContactTolerance::of(width);
+  Vec3 tail = Vec3::Zero();
+  for (int k = 0; k < reference.count(); ++k) {
+    const Vec3 head = plane.to_plane(reference.vertex_A((k + 1) % reference.count(), 0));
+    const double x = head.y() - tail.y(), y = tail.x() - head.x(), length = std::sqrt(x * x + y * y);
+    if (length > 0.0) {
+      const double nx = x / length, ny = y / length;
+      polygon.cut({nx, ny, nx * tail.x() + ny * tail.y()}, static_cast<std::uint32_t>(k), tolerance.inside);
+    }
+    tail = head;
+  }
+  return polygon.make_manifold(plane, normal_A, margin, tolerance.merge, faces);
+}
+
+Manifold make_manifold(const PolytopePair& pair, const Facet& facet, double margin) {
+  const Mat3 identity = Mat3::Identity();
+  const Vec3 zero = Vec3::Zero();
+  if (facet.kind == Facet::Kind::edges) {
+    const ConvexHull::Edge &edge_a = pair.a.edges[facet.a], &edge_b = pair.b.edges[facet.b];
+    const Vec3 &tail_a = pair.a.vertices[edge_a.tail], &head_a = pair.a.vertices[edge_a.head];
+    const Vec3 tail_b = pair.R_AB * pair.b.vertices[edge_b.tail] + pair.p_AB;
+    const Vec3 head_b = pair.R_AB * pair.b.vertices[edge_b.head] + pair.p_AB;
+    const Segment a{0.5 * (tail_a + head_a), 0.5 * (head_a - tail_a)}, b{0.5 * (tail_b + head_b), 0.5 * (head_b - tail_b)};
+    const double merge = ContactTolerance::of(std::min(a.reach.norm(), b.reach.norm())).merge;
+    return make_segment_manifold({a, 0.0}, {b, 0.0}, facet.normal_A, margin, merge, mix_features(facet.a, facet.b, 1));
+  }
+  const bool of_a = facet.kind == Facet::Kind::face_a;
+  const std::uint32_t face_a = of_a ? facet.a : face_along(pair.a, facet.normal_A);
+  const std::uint32_t face_b = of_a ? face_along(pair.b, pair.R_AB.transpose() * -facet.normal_A) : facet.b;
+  const PlacedFace a{pair.a, pair.a.faces[face_a], identity, zero};
+  const PlacedFace b{pair.b, pair.b.faces[face_b], pair.R_AB, pair.p_AB};
+  const std::uint32_t faces = mix_features(face_a, face_b, of_a ? 2 : 3);
+  return of_a ? clip_faces(a, b, facet.normal_A, margin, faces) : clip_faces(b, a, facet.normal_A, margin, faces);
+}
+
+/// The facet of the last search if its lead (kept by the pipeline) still holds, else a new search.
+FacetAnswer choose_facet(const PolytopePair& pair, double margin, const AxisPreference& preference, PairCache& cache) {
+  if (cache.slack > 0.0) {
+    const Facet facet = recall_facet(pair, cache);
+    if (facet.kind != Facet::Kind::none && facet.separation + preference.face < margin) return {facet, cache.slack};
+  }
+  return find_facet(pair, margin, preference, cache);
+}
+
+Manifold collide(const PolytopePair& pair, double margin, PairCache& cache) {
+  const AxisPreference preference = AxisPreference::of(std::min(pair.a.radius, pair.b.radius));
+  const FacetAnswer answer = choose_facet(pair, margin, preference, cache);
+  cache.axis_A = answer.facet.normal_A;
+  cache.gap = answer.facet.separation;
+  cache.slack = 0.0;
+  if (answer.facet.separation > margin) return {};
+  const Manifold manifold = make_manifold(pair, answer.facet, margin);
+  // Apart, the lead is proven only if the facet's own features are the closest ones.
+  for (std::size_t i = 0; i < static_cast<std::size_t>(manifold.count); ++i) {
+    if (manifold.points[i].separation <= std::max(0.0, answer.facet.separation) + 1e-3 * preference.face) {
+      cache.slack = answer.lead;
+    }
+  }
+  return manifold;
+}
+
+}  // namespace
+
+Manifold collide_box_hull(const Box& a, const HullPointer& b, const Pose& X_AB, double margin, PairCache& cache) {
+  const BoxFeatures box(a);
+  return collide({box.view(), view_of(*b), rotation_matrix(X_AB.q), X_AB.p}, margin, cache);
+}
+
+Manifold collide_hull_hull(const HullPointer& a, const HullPointer& b, const Pose& X_AB, double margin,
+                           PairCache& cache) {
+  return collide({view_of(*a), view_of(*b), rotation_matrix(X_AB.q), X_AB.p}, margin, cache);
+}
+
+}  // namespace tumble

@@ -1,0 +1,64 @@
+// Contact points in A's frame -> manifold. Points arrive in the order of the features that make them, so which of two
+// merged points stays does not depend on rounding.
+#include "collision/manifold_builder.h"
+
+#include <limits>
+#include <utility>
+
+namespace tumble {
+
+void ManifoldBuilder::add(const Vec3& p_A, double separation, std::uint32_t feature) {
+  if (!(separation <= margin_)) return;
+  // The first of two merged points stays unless the other is deeper by more than resting bodies move.
+  const double deeper = 1e-5 * merge_;
+  for (int i = 0; i < count_; ++i) {
+    ManifoldPoint& kept = points_[static_cast<std::size_t>(i)];
+    if ((kept.p_A - p_A).squaredNorm() >= merge_ * merge_) continue;
+    if (separation < kept.separation - deeper) kept = {p_A, separation, feature};
+    return;
+  }
+  if (count_ == kCapacity) reduce();
+  points_[static_cast<std::size_t>(count_++)] = {p_A, separation, feature};
+}
+
+void ManifoldBuilder::reduce() {
+  std::array<double, kCapacity> distance2;
+  distance2.fill(std::numeric_limits<double>::infinity());
+  std::size_t next = 0;
+  const std::size_t total = static_cast<std::size_t>(count_);
+  for (std::size_t i = 1; i < total; ++i) {
+    if (points_[i].separation < points_[next].separation) next = i;
+  }
+  for (std::size_t kept = 0; kept < kMaxManifoldPoints; ++kept) {
+    std::swap(points_[kept], points_[next]);
+    std::swap(distance2[kept], distance2[next]);
+    next = kept + 1;
+    for (std::size_t i = kept + 1; i < total; ++i) {
+      distance2[i] = std::min(distance2[i], (points_[i].p_A - points_[kept].p_A).squaredNorm());
+      if (distance2[i] > distance2[next]) next = i;
+    }
+  }
+  count_ = kMaxManifoldPoints;
+}
+
+Manifold ManifoldBuilder::finish() {
+  if (count_ > kMaxManifoldPoints) reduce();
+  Manifold manifold;
+  manifold.normal_A = normal_A_;
+  manifold.count = count_;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(count_); ++i) manifold.points[i] = points_[i];
+  return manifold;
+}
+
+Manifold single_point(const Vec3& normal_A, const Vec3& p_A, double separation, double margin,
+                      std::uint32_t feature) {
+  Manifold manifold;
+  manifold.normal_A = normal_A;
+  if (separation <= margin) {
+    manifold.count = 1;
+    manifold.points[0] = {p_A, separation, feature};
+  }
+  return manifold;
+}
+
+}  // namespace tumble

@@ -1,0 +1,54 @@
+// Collects contact points into a manifold: leaves out those beyond the margin, merges near-duplicates, and keeps eight.
+#pragma once
+
+#include <array>
+
+#include "collision/manifold.h"
+
+namespace tumble {
+
+/// Lengths [m] below which clipping calls two places the same.
+struct ContactTolerance {
+  double inside;  ///< A vertex this far outside a face still counts as inside and is not moved.
+  double merge;   ///< Points closer than this are one.
+
+  /// 0.1 mm and 1 mm (coincident edges otherwise let points jump along the edge: a warm start's residual was 1e-3
+  /// instead of 1e-8), but never more than these fractions of the narrower face, `width` [m] across.
+  static ContactTolerance of(double width) {
+    return {std::min(1e-4, 1e-3 * width), std::min(1e-3, 1e-2 * width)};
+  }
+};
+
+class ManifoldBuilder {
+ public:
+  ManifoldBuilder(const Vec3& normal_A, double margin, double merge)
+      : normal_A_(normal_A), margin_(margin), merge_(merge) {}
+
+  void add(const Vec3& p_A, double separation, std::uint32_t feature);
+  int count() const { return count_; }
+  /// At most eight points: the deepest, then always the one furthest from those kept.
+  Manifold finish();
+
+ private:
+  static constexpr int kCapacity = 64;
+  void reduce();
+
+  Vec3 normal_A_;
+  double margin_, merge_;
+  int count_ = 0;
+  std::array<ManifoldPoint, kCapacity> points_;
+};
+
+/// A manifold of one point, or none if it is further than the margin.
+Manifold single_point(const Vec3& normal_A, const Vec3& p_A, double separation, double margin,
+                      std::uint32_t feature);
+
+/// Mixes ids of features into one that stays the same as long as all of them do.
+inline std::uint32_t mix_features(std::uint32_t a, std::uint32_t b, std::uint32_t c = 0) {
+  std::uint64_t h = (a * 0x9e3779b97f4a7c15ull) ^ (b * 0xc2b2ae3d27d4eb4full + 0x165667b19e3779f9ull) ^
+                    (c * 0xff51afd7ed558ccdull);
+  h = (h ^ (h >> 32)) * 0xd6e8feb86659fd93ull;
+  return static_cast<std::uint32_t>(h ^ (h >> 32));
+}
+
+}  // namespace tumble

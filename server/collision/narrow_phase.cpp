@@ -1,0 +1,173 @@
+// The pair matrix, the pipeline that every pair without a closed form passes, and the one place where A and B swap.
+// Everything runs in the frame of the shape that comes first in the matrix.
+#include "collision/narrow_phase.h"
+
+#include <array>
+#include <limits>
+#include <utility>
+
+#include "collision/collide_box_box.h"
+#include "collision/collide_capsule.h"
+#include "collision/collide_half_space.h"
+#include "collision/collide_polytope.h"
+#include "collision/collide_sphere.h"
+#include "collision/gjk.h"
+#include "math/rotation.h"
+
+namespace tumble {
+namespace {
+
+/// Either a closed form, cheaper than any early end, or exact features behind the pipeline below.
+struct PairFunction {
+  Manifold (*closed_form)(const Shape&, const Shape&, const Pose&, double margin) = nullptr;
+  Manifold (*exact)(const Shape&, const Shape&, const Pose&, double margin, PairCache&) = nullptr;
+};
+
+template <auto function, typename A, typename B>
+Manifold unpack(const Shape& a, const Shape& b, const Pose& X_AB, double margin) {
+  return function(*std::get_if<A>(&a), *std::get_if<B>(&b), X_AB, margin);
+}
+template <auto function, typename A, typename B>
+Manifold unpack(const Shape& a, const Shape& b, const Pose& X_AB, double margin, PairCache& cache) {
+  return function(*std::get_if<A>(&a), *std::get_if<B>(&b), X_AB, margin, cache);
+}
+
+template <auto function, typename A, typename B>
+constexpr PairFunction pair_function(Manifold (*)(const A&, const B&, const Pose&, double)) {
+  return {&unpack<function, A, B>, nullptr};
+}
+template <auto function, typename A, typename B>
+constexpr PairFunction pair_function(Manifold (*)(const A&, const B&, const Pose&, double, PairCache&)) {
+  return {nullptr, &unpack<function, A, B>};
+}
+template <auto function>
+constexpr PairFunction by = pair_function<function>(function);
+
+constexpr PairFunction none;
+
+// Rows: shape A, columns: shape B, both in the order of Shape's alternatives. Half-spaces never meet: they don't move.
+// clang-format off
+constexpr std::array<std::array<PairFunction, kShapeTypes>, kShapeTypes> kMatrix = {{
+  //            half-space  sphere                          capsule                          box                          hull
+  /*half-space*/ {none,     by<collide_half_space_sphere>,  by<collide_half_space_capsule>,  by<collide_half_space_box>,  by<collide_half_space_hull>},
+  /*sphere    */ {none,     by<collide_sphere_sphere>,      by<collide_sphere_capsule>,      by<collide_sphere_box>,      by<collide_sphere_hull>},
+  /*capsule   */ {none,     none,                           by<collide_capsule_capsule>,     by<collide_capsule_box>,     by<collide_capsule_hull>},
+  /*box       */ {none,     none,                           none,                            by<collide_box_box>,         by<collide_box_hull>},
+  /*hull      */ {none,     none,                           none,                            none,                        by<collide_hull_hull>},
+}};
+// clang-format on
+
+/// Rounding of one separation, as multiple of epsilon times the lengths involved.
+constexpr double kRounding = 32.0 * std::numeric_limits<double>::epsilon();
+
+/// B in A. The difference of positions comes first: far from the origin it is exact, products with it are not.
+Pose relative_pose(const Pose& X_WA, const Pose& X_WB) {
+  const Quat q_AW = X_WA.q.conjugate();
+  return {q_AW * X_WB.q, q_AW * (X_WB.p - X_WA.p)};
+}
+
+/// Upper bound of |R - R0| (spectral norm) between the orientations: 2 sin(angle / 2) <= 2 |q - q0|.
+double turned_by(const Quat& q, const Quat& q0) {
+  const double sign = q.dot(q0) < 0.0 ? -1.0 : 1.0;
+  return 2.0 * (q.coeffs() - sign * q0.coeffs()).norm();
+}
+
+/// The early ends of the pipeline, for one pair of shapes in matrix order.
+class Query {
+ public:
+  Query(const Shape& a, const Shape& b, const Pose& X_AB, double margin, const NarrowPhaseOptions& options,
+        PairCache& cache, NarrowPhaseCounters& counters)
+      : a_(a), b_(b), X_AB_(X_AB), margin_(margin), options_(options), cache_(cache), counters_(counters) {}
+
+  Manifold run(const PairFunction& function) {
+    const bool was_near = cache_.axis_A.squaredNorm() > 0.0 && cache_.gap <= margin_;
+    if (stays_beyond_by_motion()) return ++counters_.motion_bound, Manifold{};
+    error_ = kRounding * (bounding_radius(a_) + radius_b_ + X_AB_.p.norm());
+    if (beyond_on_cached_axis()) return ++counters_.cached_axis, Manifold{};
+    if (options_.use_gjk && !was_near && beyond_by_gjk()) return ++counters_.gjk, Manifold{};
+    ++counters_.exact;
+    cache_.slack = options_.use_cached_facet ? cache_.slack - 2.0 * moved_by() : 0.0;
+    if (cache_.slack > 0.0) ++counters_.facet_kept;
+    const Manifold manifold = function.exact(a_, b_, X_AB_, margin_, cache_);
+    remember_pose();
+    return manifold;
+  }
+
+ private:
+  /// The gap changes exactly with the translation along the axis, and at most by the turn of B's furthest point.
+  bool stays_beyond_by_motion() {
+    radius_b_ = bounding_radius(b_);
+    if (!options_.use_motion_bound || cache_.gap <= margin_) return false;
+    const double bound = cache_.gap + cache_.axis_A.dot(X_AB_.p - cache_.p_AB) -
+                         turned_by(X_AB_.q, cache_.q_AB) * radius_b_;
+    return bound > margin_ + kRounding * (X_AB_.p.norm() + radius_b_);
+  }
+
+  bool beyond_on_cached_axis() {
+    if (!options_.use_cached_axis || cache_.gap <= 0.0) return false;
+    const double gap = separation_along(a_, b_, rotation_matrix(X_AB_.q), X_AB_.p, cache_.axis_A) - error_;
+    if (gap <= margin_) return false;
+    remember_gap(cache_.axis_A, gap);
+    return true;
+  }
+
+  bool beyond_by_gjk() {
+    const GjkAnswer answer = decide_apart(a_, b_, X_AB_);
+    counters_.gjk_uncertified += answer.kind == GjkAnswer::Kind::undecided;
+    counters_.gjk_budget_hit += answer.budget_hit;
+    if (answer.kind != GjkAnswer::Kind::apart || answer.gap <= margin_) return false;
+    remember_gap(answer.axis_A, answer.gap);
+    return true;
+  }
+
+  double moved_by() const {
+    return (X_AB_.p - cache_.p_AB).norm() + turned_by(X_AB_.q, cache_.q_AB) * radius_b_ + error_;
+  }
+
+  void remember_gap(const Vec3& axis_A, double gap) {
+    cache_.axis_A = axis_A;
+    cache_.gap = gap;
+    cache_.slack = 0.0;
+    remember_pose();
+  }
+  void remember_pose() {
+    cache_.p_AB = X_AB_.p;
+    cache_.q_AB = X_AB_.q;
+  }
+
+  const Shape &a_, &b_;
+  const Pose& X_AB_;
+  double margin_;
+  const NarrowPhaseOptions& options_;
+  PairCache& cache_;
+  NarrowPhaseCounters& counters_;
+  double radius_b_ = 0.0, error_ = 0.0;  // [m]
+};
+
+/// What is said of (A, B) in A, said of (B, A) in B.
+void swap_shapes(Manifold& manifold, const Pose& X_AB) {
+  const Quat q_BA = X_AB.q.conjugate();
+  manifold.normal_A = -(q_BA * manifold.normal_A);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(manifold.count); ++i) {
+    manifold.points[i].p_A = q_BA * (manifold.points[i].p_A - X_AB.p);
+  }
+}
+
+}  // namespace
+
+Manifold collide(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB, double margin,
+                 const NarrowPhaseOptions& options, PairCache& cache, NarrowPhaseCounters& counters) {
+  if (a.index() > b.index()) {
+    Manifold manifold = collide(b, X_WB, a, X_WA, margin, options, cache, counters);
+    swap_shapes(manifold, relative_pose(X_WB, X_WA));
+    return manifold;
+  }
+  ++counters.queries;
+  const PairFunction& function = kMatrix[a.index()][b.index()];
+  const Pose X_AB = relative_pose(X_WA, X_WB);
+  if (function.exact != nullptr) return Query(a, b, X_AB, margin, options, cache, counters).run(function);
+  ++counters.closed_form;
+  return function.closed_form != nullptr ? function.closed_form(a, b, X_AB, margin) : Manifold{};
+}
+
+}  // namespace tumble

@@ -1,0 +1,144 @@
+// Topology of the box, descent over vertices, and point against polytope: the closest point of an outside point lies on
+// a face that the point sees, so it is the nearest over all of those.
+#include "collision/polytope.h"
+
+#include <limits>
+
+#include "collision/manifold_builder.h"
+#include "collision/segment.h"
+
+namespace tumble {
+namespace {
+
+// Corner i lies on the positive side of axis k if bit k is set.
+constexpr std::array<std::uint32_t, 24> kBoxLoops = {1, 3, 7, 5, 0, 4, 6, 2, 2, 6, 7, 3,
+                                                     0, 1, 5, 4, 4, 5, 7, 6, 0, 2, 3, 1};
+constexpr std::array<std::uint32_t, 9> kBoxNeighbourOffsets = {0, 3, 6, 9, 12, 15, 18, 21, 24};
+
+constexpr std::array<std::uint32_t, 24> box_neighbours() {
+  std::array<std::uint32_t, 24> neighbours{};
+  for (std::uint32_t i = 0; i < 24; ++i) neighbours[i] = (i / 3) ^ (1u << i % 3);
+  return neighbours;
+}
+
+constexpr std::array<ConvexHull::Edge, 12> box_edges() {
+  std::array<ConvexHull::Edge, 12> edges{};
+  std::size_t n = 0;
+  for (std::uint32_t i = 0; i < 24; ++i) {
+    const std::uint32_t tail = kBoxLoops[i], head = kBoxLoops[i % 4 == 3 ? i - 3 : i + 1];
+    if (tail > head) continue;
+    for (std::uint32_t k = 0; k < 24; ++k) {
+      if (kBoxLoops[k] == head && kBoxLoops[k % 4 == 3 ? k - 3 : k + 1] == tail) {
+        edges[n++] = {tail, head, i / 4, k / 4};
+      }
+    }
+  }
+  return edges;
+}
+
+constexpr std::array<std::uint32_t, 24> kBoxNeighbours = box_neighbours();
+constexpr std::array<ConvexHull::Edge, 12> kBoxEdges = box_edges();
+
+/// Closest point of a face to p, whose foot on the face's plane is `foot`.
+PointDistance closest_on_face(const Polytope& polytope, std::uint32_t index, const Vec3& p, double height) {
+  const ConvexHull::Face& face = polytope.faces[index];
+  const auto loop = polytope.loop(face);
+  PointDistance best{std::numeric_limits<double>::infinity(), face.normal, p, 0};
+  bool inside = true;
+  for (std::size_t i = 0; i < loop.size(); ++i) {
+    const Vec3& tail = polytope.vertices[loop[i]];
+    const Vec3& head = polytope.vertices[loop[i + 1 == loop.size() ? 0 : i + 1]];
+    const Vec3 along = head - tail, d = p - tail;
+    if (along.cross(d).dot(face.normal) >= 0.0) continue;
+    inside = false;
+    const double length2 = along.squaredNorm();
+    const double s = length2 > 0.0 ? std::clamp(along.dot(d) / length2, 0.0, 1.0) : 0.0;
+    const Vec3 foot = tail + s * along;
+    const double distance = (p - foot).norm();
+    if (distance < best.distance) {
+      best = {distance, direction_or(p - foot, face.normal), foot, mix_features(1, loop[i])};
+    }
+  }
+  if (inside) best = {height, face.normal, p - height * face.normal, mix_features(0, index)};
+  return best;
+}
+
+}  // namespace
+
+BoxFeatures::BoxFeatures(const Box& box) : radius_(box.half_extents.norm()) {
+  for (std::uint32_t i = 0; i < 8; ++i) {
+    for (int k = 0; k < 3; ++k) vertices_[i][k] = i >> k & 1 ? box.half_extents[k] : -box.half_extents[k];
+  }
+  for (std::uint32_t i = 0; i < 6; ++i) {
+    const int axis = static_cast<int>(i / 2);
+    faces_[i] = {i % 2 ? Vec3(-Vec3::Unit(axis)) : Vec3::Unit(axis), box.half_extents[axis], 4 * i, 4};
+  }
+}
+
+Polytope BoxFeatures::view() const {
+  return {vertices_, kBoxLoops, faces_, kBoxEdges, kBoxNeighbourOffsets, kBoxNeighbours, radius_};
+}
+
+Polytope view_of(const ConvexHull& hull) {
+  return {hull.vertices,          hull.loops,      hull.faces, hull.edges,
+          hull.neighbour_offsets, hull.neighbours, hull.radius};
+}
+
+Lowest descend(const Polytope& polytope, const Vec3& d, std::uint32_t start, double enough) {
+  Lowest lowest{start < polytope.vertices.size() ? start : 0, 0.0};
+  lowest.height = d.dot(polytope.vertices[lowest.vertex]);
+  for (bool descending = true; descending && lowest.height >= enough;) {
+    descending = false;
+    const std::uint32_t from = lowest.vertex;
+    for (std::uint32_t k = polytope.neighbour_offsets[from]; k < polytope.neighbour_offsets[from + 1]; ++k) {
+      const double height = d.dot(polytope.vertices[polytope.neighbours[k]]);
+      if (height < lowest.height) lowest = {polytope.neighbours[k], height}, descending = true;
+    }
+  }
+  return lowest;
+}
+
+double face_width(const Polytope& polytope, const ConvexHull::Face& face) {
+  const auto loop = polytope.loop(face);
+  double perimeter = 0.0, area2 = 0.0;
+  const Vec3& origin = polytope.vertices[loop[0]];
+  for (std::size_t i = 0; i < loop.size(); ++i) {
+    const Vec3& tail = polytope.vertices[loop[i]];
+    const Vec3& head = polytope.vertices[loop[i + 1 == loop.size() ? 0 : i + 1]];
+    perimeter += (head - tail).norm();
+    area2 += (tail - origin).cross(head - origin).dot(face.normal);
+  }
+  return perimeter > 0.0 ? area2 / perimeter : 0.0;
+}
+
+std::uint32_t face_along(const Polytope& polytope, const Vec3& d) {
+  std::uint32_t best = 0;
+  double most = -std::numeric_limits<double>::infinity();
+  for (std::uint32_t i = 0; i < polytope.faces.size(); ++i) {
+    const double along = polytope.faces[i].normal.dot(d);
+    if (along > most) best = i, most = along;
+  }
+  return best;
+}
+
+PointDistance compute_distance(const Polytope& polytope, const Vec3& p, double enough) {
+  double highest = -std::numeric_limits<double>::infinity();
+  std::uint32_t nearest = 0;
+  for (std::uint32_t i = 0; i < polytope.faces.size(); ++i) {
+    const double height = polytope.faces[i].normal.dot(p) - polytope.faces[i].offset;
+    if (height > highest) highest = height, nearest = i;
+  }
+  const Vec3& normal = polytope.faces[nearest].normal;
+  PointDistance best{highest, normal, p - highest * normal, mix_features(0, nearest)};
+  if (highest <= 0.0 || highest > enough) return best;
+  best.distance = std::numeric_limits<double>::infinity();
+  for (std::uint32_t i = 0; i < polytope.faces.size(); ++i) {
+    const double height = polytope.faces[i].normal.dot(p) - polytope.faces[i].offset;
+    if (height <= 0.0 || height >= best.distance) continue;
+    const PointDistance candidate = closest_on_face(polytope, i, p, height);
+    if (candidate.distance < best.distance) best = candidate;
+  }
+  return best;
+}
+
+}  // namespace tumble

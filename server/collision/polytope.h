@@ -1,0 +1,65 @@
+// One view of everything with flat faces (boxes, hulls), so that exact feature searches are written once; and the
+// signed distance of a point from it. Lengths in [m], in the polytope's own frame.
+#pragma once
+
+#include <array>
+#include <span>
+
+#include "collision/convex_hull.h"
+#include "collision/shape.h"
+
+namespace tumble {
+
+struct Polytope {
+  std::span<const Vec3> vertices;
+  std::span<const std::uint32_t> loops;
+  std::span<const ConvexHull::Face> faces;
+  std::span<const ConvexHull::Edge> edges;
+  std::span<const std::uint32_t> neighbour_offsets, neighbours;
+  double radius = 0.0;
+
+  std::span<const std::uint32_t> loop(const ConvexHull::Face& face) const {
+    return loops.subspan(face.first, face.count);
+  }
+};
+
+/// Corners and face planes of a box; face 2i looks along +axis i, face 2i + 1 along -axis i.
+class BoxFeatures {
+ public:
+  explicit BoxFeatures(const Box& box);
+  BoxFeatures(const BoxFeatures&) = delete;  // views point into this object
+  BoxFeatures& operator=(const BoxFeatures&) = delete;
+  Polytope view() const;
+
+ private:
+  double radius_;
+  std::array<Vec3, 8> vertices_;
+  std::array<ConvexHull::Face, 6> faces_;
+};
+
+Polytope view_of(const ConvexHull& hull);
+
+/// Vertex with the least height along d, by descent over edges from vertex `start`. Stops at once below `enough`: the
+/// true least height is then below it too.
+struct Lowest {
+  std::uint32_t vertex;
+  double height;
+};
+Lowest descend(const Polytope& polytope, const Vec3& d, std::uint32_t start, double enough);
+
+/// Across the face where it is narrow: twice its area over its perimeter, the inradius of regular shapes [m].
+double face_width(const Polytope& polytope, const ConvexHull::Face& face);
+
+/// Face whose normal goes along d the most; the first of equals.
+std::uint32_t face_along(const Polytope& polytope, const Vec3& d);
+
+struct PointDistance {
+  double distance;  ///< < 0 inside [m].
+  Vec3 normal;      ///< Unit, out of the polytope towards the point.
+  Vec3 foot;        ///< Closest point of the surface.
+  std::uint32_t feature;
+};
+/// Distance of point p. Ends early with any lower bound above `enough` [m] once there is one.
+PointDistance compute_distance(const Polytope& polytope, const Vec3& p, double enough);
+
+}  // namespace tumble

@@ -1,0 +1,63 @@
+// Closest points of two straight segments, and directions across a line: shared by capsules and by edge contacts.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "math/types.h"
+
+namespace tumble {
+
+/// Points centre + s * reach with s in [-1, 1].
+struct Segment {
+  Vec3 centre, reach;
+  Vec3 at(double s) const { return centre + s * reach; }
+  double closest_parameter(const Vec3& p) const {
+    const double length2 = reach.squaredNorm();
+    return length2 > 0.0 ? std::clamp(reach.dot(p - centre) / length2, -1.0, 1.0) : 0.0;
+  }
+};
+
+struct SegmentPair {
+  double s_A, s_B;
+  Vec3 p_A, p_B;
+};
+
+/// Closest points by clamping one parameter after the other (Ericson, Real-Time Collision Detection, 5.1.9). On
+/// parallel segments the middle of the part that lies side by side.
+inline SegmentPair closest_points(const Segment& a, const Segment& b) {
+  constexpr double kParallel = 1e-24;  // sin^2 below which the crossing point is noise
+  const double aa = a.reach.squaredNorm(), bb = b.reach.squaredNorm(), ab = a.reach.dot(b.reach);
+  const Vec3 d = a.centre - b.centre;
+  const double cross = a.reach.cross(b.reach).squaredNorm();
+  double s = 0.0;
+  if (cross > kParallel * aa * bb) {
+    s = std::clamp((ab * b.reach.dot(d) - bb * a.reach.dot(d)) / cross, -1.0, 1.0);
+  } else if (aa > 0.0) {
+    const double centre = -a.reach.dot(d) / aa, half = std::abs(ab) / aa;
+    const double low = std::clamp(centre - half, -1.0, 1.0), high = std::clamp(centre + half, -1.0, 1.0);
+    s = 0.5 * (low + high);
+  }
+  const double t = b.closest_parameter(a.at(s));
+  s = a.closest_parameter(b.at(t));
+  return {s, t, a.at(s), b.at(t)};
+}
+
+/// Some unit vector at right angles to d; +x if d is zero.
+inline Vec3 perpendicular_to(const Vec3& d) {
+  int least = 0;
+  for (int i = 1; i < 3; ++i) {
+    if (std::abs(d[i]) < std::abs(d[least])) least = i;
+  }
+  const Vec3 side = d.cross(Vec3::Unit(least));
+  const double length = side.norm();
+  return length > 0.0 ? Vec3(side / length) : Vec3::UnitX();
+}
+
+/// d / |d|, or `otherwise` (unit) if d is zero.
+inline Vec3 direction_or(const Vec3& d, const Vec3& otherwise) {
+  const double length = d.norm();
+  return length > 0.0 ? Vec3(d / length) : otherwise;
+}
+
+}  // namespace tumble

@@ -30,6 +30,12 @@ void integrate_semi_implicit_euler(const MassProperties& mass, const VelocityPat
 void integrate_rk4(const MassProperties& mass, const VelocityPath& path, double h, Motion& body);
 void integrate_taylor8(const MassProperties& mass, const VelocityPath& path, double h, Motion& body);
 
+/// Moves a body that follows its given velocities, whatever acts on it (kinematic): x += h v, q <- exp(h w) q.
+void move_kinematic(Motion& body, double h);
+
+/// What the integrators share: leaves v1, L1, the orientation (normalised here) and the w that belongs to them.
+void set_end_of_step(const MassProperties& mass, const VelocityPath& path, const Quat& q_WB, Motion& body);
+
 using IntegrateFunction = void (*)(const MassProperties&, const VelocityPath&, double, Motion&);
 IntegrateFunction integrate_function(Integrator integrator);
 

@@ -1,25 +1,29 @@
 // See rotation.h. The Horner order is fixed: a different order is a different function to the last bit.
 #include "math/rotation.h"
 
+#include <array>
 #include <bit>
 #include <cassert>
 #include <cmath>
 #include <cstdint>
+#include <numbers>
 
 namespace tumble {
 namespace {
 
 constexpr double kTwoOverPi = 6.36619772367581382433e-01;
-constexpr double kHalfPiHi = 1.57079632673412561417;       // 33 bits: k * kHalfPiHi is exact for |k| < 2^20
+constexpr double kHalfPiHi = 1.57079632673412561417;  // 33 bits: k * kHalfPiHi is exact for |k| < 2^20
 constexpr double kHalfPiLo = 6.07710050650619224932e-11;
 constexpr double kLn2Hi = 6.93147180369123816490e-01;
 constexpr double kLn2Lo = 1.90821492927058770002e-10;
 constexpr double kLog2E = 1.44269504088896338700;
 
-constexpr double kS[] = {-1.66666666666666324348e-01, 8.33333333332248946124e-03, -1.98412698298579493134e-04,
-                         2.75573137070700676789e-06,  -2.50507602534068634195e-08, 1.58969099521155010221e-10};
-constexpr double kC[] = {4.16666666666666019037e-02, -1.38888888888741095749e-03, 2.48015872894767294178e-05,
-                         -2.75573143513906633035e-07, 2.08757232129817482790e-09, -1.13596475577881948265e-11};
+constexpr double kS[] = {-1.66666666666666324348e-01, 8.33333333332248946124e-03,
+                         -1.98412698298579493134e-04, 2.75573137070700676789e-06,
+                         -2.50507602534068634195e-08, 1.58969099521155010221e-10};
+constexpr double kC[] = {4.16666666666666019037e-02, -1.38888888888741095749e-03,
+                         2.48015872894767294178e-05, -2.75573143513906633035e-07,
+                         2.08757232129817482790e-09, -1.13596475577881948265e-11};
 
 double sin_reduced(double r) {
   const double r2 = r * r;
@@ -35,30 +39,56 @@ double cos_reduced(double r) {
   return w + (((1.0 - w) - y) + r2 * r2 * p);
 }
 
+/// 1/first!, 1/(first + stride)!, ...
+template <std::size_t count>
+constexpr std::array<double, count> inverse_factorials(int first, int stride) {
+  std::array<double, count> inverse{};
+  double factorial = 1.0;  // exact up to 22!
+  int n = 1;
+  for (std::size_t k = 0; k < count; ++k) {
+    for (; n <= first + stride * static_cast<int>(k); ++n) factorial *= n;
+    inverse[k] = 1.0 / factorial;
+  }
+  return inverse;
+}
+constexpr auto kExp = inverse_factorials<12>(2, 1);
+constexpr auto kCos = inverse_factorials<7>(2, 2);
+constexpr auto kSinc = inverse_factorials<7>(3, 2);
+
+/// c_0 + x (c_1 + x (c_2 + ...)).
+template <std::size_t count>
+double horner(const std::array<double, count>& c, double x) {
+  double sum = c[count - 1];
+  for (std::size_t k = count - 1; k-- > 0;) sum = c[k] + x * sum;
+  return sum;
+}
+
 /// e^r - 1 for |r| <= 0.35 by its Taylor series to r^13 (remainder < 5e-18).
 double expm1_reduced(double r) {
-  double sum = 1.0 / 6227020800.0;  // 1/13!
-  double factorial = 6227020800.0;
-  for (int n = 12; n >= 2; --n) {
-    factorial /= n + 1;
-    sum = 1.0 / factorial + r * sum;
-  }
-  return r + r * r * sum;
+  return r + r * r * horner(kExp, r);
 }
 
 }  // namespace
 
 SinCos sincos(double x) {
-  assert(std::abs(x) < 1.6e6);
+  if (!(std::abs(x) < 1.6e6)) {
+    // Here x itself is rounded to 1e-10 or worse. The remainder is exact by IEEE 754, alike in every C library.
+    x = std::remainder(x, 2.0 * std::numbers::pi);
+    if (!std::isfinite(x)) return {x, x};
+  }
   const double k = std::nearbyint(x * kTwoOverPi);
   const double r = (x - k * kHalfPiHi) - k * kHalfPiLo;
   const double s = sin_reduced(r);
   const double c = cos_reduced(r);
   switch (static_cast<std::int64_t>(k) & 3) {
-    case 0: return {s, c};
-    case 1: return {c, -s};
-    case 2: return {-s, -c};
-    default: return {-c, s};
+    case 0:
+      return {s, c};
+    case 1:
+      return {c, -s};
+    case 2:
+      return {-s, -c};
+    default:
+      return {-c, s};
   }
 }
 
@@ -80,14 +110,10 @@ double mean_decay(double x) {
 Quat exp_map(const Vec3& r) {
   const double x2 = 0.25 * r.squaredNorm();  // half angle, squared
   if (x2 < 0.04) {
-    // Taylor series of cos x and sin x / x: no square root, no division by a tiny angle (remainder < 1e-20).
-    double c = 0.0, s = 0.0;
-    for (int n = 8; n >= 1; --n) {
-      c = (1.0 + c) * (-x2 / ((2.0 * n) * (2.0 * n - 1.0)));
-      s = (1.0 + s) * (-x2 / ((2.0 * n) * (2.0 * n + 1.0)));
-    }
-    const Vec3 v = (0.5 * (1.0 + s)) * r;
-    return Quat(1.0 + c, v.x(), v.y(), v.z());
+    // Taylor series of cos x and sin x / x: no square root, no division by a tiny angle (remainder < 1e-21).
+    const double c = 1.0 - x2 * horner(kCos, -x2);
+    const Vec3 v = (0.5 - 0.5 * (x2 * horner(kSinc, -x2))) * r;
+    return Quat(c, v.x(), v.y(), v.z());
   }
   const double x = std::sqrt(x2);
   const SinCos sc = sincos(x);

@@ -11,7 +11,8 @@ struct SinCos {
   double sin, cos;
 };
 
-/// sin and cos of x [rad], |x| < 1.6e6; absolute error <= 1.2e-16.
+/// sin and cos of x [rad]; absolute error <= 1.2e-16 for |x| < 1.6e6, beyond that 4e-17 |x|, which is less than the
+/// rounding of x itself. NaN if x is not finite.
 SinCos sincos(double x);
 
 /// e^x for x <= 0 (decays), <= 1 ulp; exactly 0 below -708.

@@ -1,0 +1,59 @@
+// See integrator.h: the table of rivals, and what they share.
+#include "dynamics/integrator.h"
+
+#include <array>
+#include <cassert>
+
+namespace tumble {
+namespace {
+
+struct Rival {
+  Integrator integrator;
+  const char* name;
+  IntegrateFunction integrate;
+};
+
+/// In the order of the enum.
+constexpr std::array<Rival, 4> kRivals = {{
+    {Integrator::course, "course", integrate_course},
+    {Integrator::semi_implicit_euler, "semi_implicit_euler", integrate_semi_implicit_euler},
+    {Integrator::rk4, "rk4", integrate_rk4},
+    {Integrator::taylor8, "taylor8", integrate_taylor8},
+}};
+
+const Rival& rival(Integrator integrator) {
+  const Rival& found = kRivals[static_cast<std::size_t>(integrator)];
+  assert(found.integrator == integrator);
+  return found;
+}
+
+}  // namespace
+
+IntegrateFunction integrate_function(Integrator integrator) {
+  return rival(integrator).integrate;
+}
+
+const char* integrator_name(Integrator integrator) {
+  return rival(integrator).name;
+}
+
+std::optional<Integrator> integrator_from_name(std::string_view name) {
+  for (const Rival& rival : kRivals) {
+    if (name == rival.name) return rival.integrator;
+  }
+  return std::nullopt;
+}
+
+void set_end_of_step(const MassProperties& mass, const VelocityPath& path, const Quat& q_WB, Motion& body) {
+  body.v = path.v1;
+  body.L = path.L1;
+  body.q = normalized(q_WB);
+  body.w = angular_velocity(mass, body.q, body.L);
+}
+
+void move_kinematic(Motion& body, double h) {
+  body.x += h * body.v;
+  body.q = normalized(exp_map(h * body.w) * body.q);
+}
+
+}  // namespace tumble

@@ -2,6 +2,7 @@
 // far from the world's origin keeps every digit.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 
@@ -24,5 +25,12 @@ struct Manifold {
   int count = 0;                  ///< 0: no point closer than the margin.
   std::array<ManifoldPoint, kMaxManifoldPoints> points;
 };
+
+/// Largest overlap of the manifold's points [m], >= 0.
+inline double deepest(const Manifold& manifold) {
+  double depth = 0.0;
+  for (int i = 0; i < manifold.count; ++i) depth = std::max(depth, -manifold.points[static_cast<std::size_t>(i)].separation);
+  return depth;
+}
 
 }  // namespace tumble

@@ -16,20 +16,22 @@ struct Contact {
   double friction = 0.0, restitution = 0.0;
   PairCache cache;
   Manifold manifold;
+  Vec3 normal_W = Vec3::UnitZ();  ///< The manifold's normal in W at the last query.
   /// Impulses of the last solve on b at each manifold point, as vectors in W [N s]: the warm start.
   std::array<Vec3, kMaxManifoldPoints> impulse;
 };
 
 class ContactGraph {
  public:
-  /// Inserts the pairs that are not there yet; `added` is sorted. `make` fills the materials and bodies of a new one.
+  /// Inserts the pairs that are not there yet and returns how many; `added` is sorted. `make(pair)` gives the contact.
   template <typename Make>
-  void insert(const std::vector<GeometryPair>& added, Make make) {
+  std::size_t insert(const std::vector<GeometryPair>& added, Make make) {
     incoming_.clear();
     for (const GeometryPair pair : added) {
       if (!find(pair)) incoming_.push_back(make(pair));
     }
     merge_incoming();
+    return incoming_.size();
   }
   /// Removes every contact for which `gone(contact)` holds; returns how many.
   template <typename Gone>

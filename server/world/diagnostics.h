@@ -36,6 +36,6 @@ struct Conserved {
 };
 
 /// Called at the border between stages, so that a caller with a clock can time them.
-enum class Stage { commands, broad_phase, narrow_phase, islands, solve, rest, count };
+enum class Stage { commands, broad_phase, narrow_phase, islands, solve, report, count };
 
 }  // namespace tumble

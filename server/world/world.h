@@ -3,9 +3,11 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 #include "collision/broad_phase.h"
@@ -23,7 +25,9 @@ struct Geometry {
   Shape shape;
   Pose X_BS;
   Material material;
-  double fat_margin = 0.0;
+  double radius = 0.0;          ///< Of a ball about S's origin that holds the shape [m].
+  double fat_margin = 0.0;      ///< Slack of its broad-phase box [m].
+  double contact_margin = 0.0;  ///< Gap at which its contacts start [m].
 };
 
 /// What a body is: constant after creation, read rarely.
@@ -69,7 +73,8 @@ class World {
   const Body& body(std::uint32_t slot) const { return bodies_[slot]; }
   const Motion& motion(std::uint32_t slot) const { return motions_[slot]; }
   const MassProperties& mass_properties(std::uint32_t slot) const { return masses_[slot]; }
-  bool resting(std::uint32_t slot) const { return !awake_flag_[slot]; }
+  /// A dynamic body that is not stepped until something near it changes.
+  bool resting(std::uint32_t slot) const { return movable(slot) && !awake(slot); }
   BodyId id(std::uint32_t slot) const { return {slot, bodies_[slot].generation}; }
   bool is_valid(BodyId id) const;
   std::optional<BodyId> find(std::string_view name) const;
@@ -89,37 +94,121 @@ class World {
   const std::vector<BodyId>& contained() const { return contained_; }
 
  private:
+  static constexpr std::uint32_t kWorld = 0xffffffffu;
+
   struct ActivePush {
     Push push;
-    double remaining;  // [s]; < 0: one whole step
+    double steps_left;  // whole ones and a last fraction
   };
-  struct Link {  // a spring or rope, anchors in body frames
-    std::uint32_t a, b;  // slots, or kWorld
+  /// A spring or rope between two anchors in body frames; slot kWorld: p in W.
+  struct Tie {
+    std::uint32_t a, b;
     Vec3 pA, pB;
+    std::variant<Spring, Rope> law;
+    double lambda = 0.0;  // rope: warm start [N s]
   };
-  static constexpr std::uint32_t kWorld = 0xffffffffu;
+  /// Thrown away at any time; kept so that a step allocates nothing after warm-up.
+  struct Scratch {
+    std::vector<Vec3> force, torque;  // by slot, zero between steps
+    std::vector<std::uint32_t> forced;
+    std::vector<GeometryPair> pairs;
+    std::vector<IslandEdge> edges;
+    std::vector<std::uint32_t> edge_source;  // contact index, or contacts().size() + tie index
+    IslandBuilder builder;
+    Islands islands;
+    ContactProblem problem;
+    std::vector<std::uint32_t> problem_slot;  // slot of each body of the problem
+    std::vector<std::uint32_t> local;         // by slot: index in the problem, or kWorld
+    struct Source {
+      std::uint32_t contact, point;
+    };
+    std::vector<Source> contact_source;
+    std::vector<std::uint32_t> row_source;
+    std::uint32_t problem_movable = 0;  // the first bodies of the problem; the rest are immovable partners
+  };
+  struct StepContext {
+    double h;
+    IntegrateFunction integrate;
+    SolveFunction solve;
+    SolverSettings solver_settings;
+  };
+
+  // world.cpp: slots and links.
+  std::uint32_t take_slot();
+  std::uint32_t add_geometry(std::uint32_t slot, const GeometryDefinition& definition);
+  void resolve_anchor(const Anchor& anchor, std::uint32_t& slot, Vec3& p) const;
+  void add_tie(const std::string& name, const Anchor& a, const Anchor& b, const std::variant<Spring, Rope>& law);
+  void check_live(BodyId id, const char* field) const;
+  bool movable(std::uint32_t slot) const { return bodies_[slot].type == BodyType::dynamic; }
+  bool awake(std::uint32_t slot) const { return awake_flag_[slot] != 0; }
+  void wake_slot(std::uint32_t slot);
+
+  // step.cpp: the stages, in order.
+  void apply_pushes(const StepContext& step);
+  void update_broad_phase(const StepContext& step);
+  void update_contacts(const StepContext& step);
+  void refresh_active();
+  void build_islands();
+  void advance_islands(const StepContext& step);
+  void update_report();
+  /// Awake, or a kinematic body on the move: its contacts are looked at.
+  bool takes_part(std::uint32_t slot) const;
+
+  Pose geometry_pose(const Geometry& geometry) const;
+  Aabb swept_bounds(const Geometry& geometry, double h) const;
+  Contact make_contact(GeometryPair pair) const;
+  double pair_margin(const Contact& contact, double h) const;
+
+  // island_step.cpp: one island through one step.
+  void advance_free(std::uint32_t slot, const StepContext& step);
+  void advance_connected(std::size_t island, const StepContext& step);
+  void build_problem(std::size_t island, const StepContext& step);
+  std::uint32_t problem_body(std::uint32_t slot, double h);
+  void add_contact_rows(std::uint32_t contact_index, double h);
+  void add_tie_row(std::uint32_t tie_index, double h);
+  void store_impulses();
+  bool try_rest(double residual);
+  void move_bodies(const StepContext& step);
+  void velocities_after_forces(std::uint32_t slot, double h, Vec3& v, Vec3& L) const;
+  void contain(std::uint32_t slot, const Motion& last_good);
 
   Options options_;
   std::uint64_t step_count_ = 0;
   std::uint64_t model_epoch_ = 0;
-  std::uint32_t body_count_ = 0;
+  std::uint32_t body_count_ = 0, dynamic_count_ = 0;
 
-  // Model, by slot.
+  // Model.
   std::vector<Body> bodies_;
   std::vector<MassProperties> masses_;
   std::vector<Geometry> geometries_;
   std::vector<std::uint32_t> free_bodies_, free_geometries_;
+  std::map<std::string, std::uint32_t, std::less<>> names_;
 
   // State, by slot: hot arrays.
   std::vector<Motion> motions_;
   std::vector<std::uint8_t> awake_flag_;
+  std::vector<std::uint8_t> pushed_;          // has an active push: must not rest
+  std::vector<double> calm_for_;              // [s]
+  std::vector<std::uint32_t> rest_next_;      // ring of the bodies that came to rest together
 
   BroadPhase broad_phase_;
   ContactGraph contacts_;
+  std::vector<Tie> ties_;
   std::vector<ActivePush> pushes_;
+
+  // Who takes part in the step, ascending; rebuilt only when contacts or sleepers changed.
+  bool active_stale_ = true;
+  std::vector<std::uint32_t> awake_;             // movable bodies
+  std::vector<std::uint32_t> kinematic_;         // kinematic bodies
+  std::vector<std::uint32_t> active_contacts_;   // with an awake or moving body
+  std::uint32_t resting_points_ = 0;
+  double resting_penetration_ = 0.0;
+  double step_residual_ = 0.0;  // [m/s] largest of the step's islands
+
   Counters counters_;
   StepReport report_;
   std::vector<BodyId> contained_;
+  Scratch scratch_;
 };
 
 }  // namespace tumble

@@ -1,0 +1,60 @@
+// See contact_graph.h.
+#include "world/contact_graph.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace tumble {
+
+const Contact* ContactGraph::find(GeometryPair pair) const {
+  const auto it = std::lower_bound(contacts_.begin(), contacts_.end(), pair,
+                                   [](const Contact& c, GeometryPair key) { return c.pair < key; });
+  return it != contacts_.end() && it->pair == pair ? &*it : nullptr;
+}
+
+void ContactGraph::merge_incoming() {
+  const auto middle = static_cast<std::ptrdiff_t>(contacts_.size());
+  contacts_.insert(contacts_.end(), incoming_.begin(), incoming_.end());
+  std::inplace_merge(contacts_.begin(), contacts_.begin() + middle, contacts_.end(),
+                     [](const Contact& l, const Contact& r) { return l.pair < r.pair; });
+}
+
+namespace {
+
+using Impulses = std::array<Vec3, kMaxManifoldPoints>;
+
+/// Index of the old point that continues `point`, or -1.
+int match(const Manifold& old_manifold, const ManifoldPoint& point, double reach,
+          const std::array<bool, kMaxManifoldPoints>& used) {
+  int best = -1;
+  double nearest = reach * reach;
+  for (int i = 0; i < old_manifold.count; ++i) {
+    if (used[static_cast<std::size_t>(i)]) continue;
+    const ManifoldPoint& old_point = old_manifold.points[static_cast<std::size_t>(i)];
+    if (old_point.feature == point.feature) return i;
+    const double distance = (old_point.p_A - point.p_A).squaredNorm();
+    if (distance < nearest) {
+      nearest = distance;
+      best = i;
+    }
+  }
+  return best;
+}
+
+}  // namespace
+
+void transport_impulses(const Manifold& old_manifold, const Impulses& old_impulse, const Manifold& manifold,
+                        const Vec3& normal_W, double reach, Impulses& impulse) {
+  std::array<bool, kMaxManifoldPoints> used{};
+  for (int i = 0; i < manifold.count; ++i) {
+    const auto point = static_cast<std::size_t>(i);
+    impulse[point].setZero();
+    const int from = match(old_manifold, manifold.points[point], reach, used);
+    if (from < 0) continue;
+    used[static_cast<std::size_t>(from)] = true;
+    const Vec3& carried = old_impulse[static_cast<std::size_t>(from)];
+    if (carried.dot(normal_W) > 0.0) impulse[point] = carried;
+  }
+}
+
+}  // namespace tumble

@@ -1,0 +1,237 @@
+// One island through one step: its forces, its contact problem, its impacts, its solution, its rest, its motion.
+// World frame; x, r at the start of the step.
+#include <algorithm>
+#include <cmath>
+
+#include "dynamics/impact.h"
+#include "world/world.h"
+
+namespace tumble {
+namespace {
+
+bool is_finite(const Motion& motion) {
+  return motion.x.allFinite() && motion.q.coeffs().allFinite() && motion.v.allFinite() && motion.L.allFinite() &&
+         motion.w.allFinite();
+}
+
+}  // namespace
+
+void World::velocities_after_forces(std::uint32_t slot, double h, Vec3& v, Vec3& L) const {
+  const Motion& motion = motions_[slot];
+  const Body& body = bodies_[slot];
+  Vec3 a = masses_[slot].inv_mass * scratch_.force[slot];
+  if (body.gravity) a += options_.gravity;
+  // Exact for v' = a - c v over the step: v e^{-ch} + a (1 - e^{-ch})/c.
+  const double cv = body.linear_damping * h;
+  const double cL = body.angular_damping * h;
+  v = exp_decay(-cv) * motion.v + (h * mean_decay(cv)) * a;
+  L = exp_decay(-cL) * motion.L + (h * mean_decay(cL)) * scratch_.torque[slot];
+}
+
+void World::advance_free(std::uint32_t slot, const StepContext& step) {
+  Motion& motion = motions_[slot];
+  const Motion last_good = motion;
+  VelocityPath path{.v0 = motion.v, .v1 = {}, .L0 = motion.L, .L1 = {}};
+  velocities_after_forces(slot, step.h, path.v1, path.L1);
+  step.integrate(masses_[slot], path, step.h, motion);
+  calm_for_[slot] = 0.0;
+  ++counters_.islands_free;
+  if (!is_finite(motion)) contain(slot, last_good);
+}
+
+void World::advance_connected(std::size_t island, const StepContext& step) {
+  build_problem(island, step);
+  ContactProblem& problem = scratch_.problem;
+  prepare(problem, options_.bounds);
+  const ImpactReport impacts = resolve_impacts(
+      problem, {.threshold_speed = options_.restitution_threshold, .max_impacts = options_.max_impacts});
+  const SolverReport solved = step.solve(problem, step.solver_settings);
+  counters_.impacts += impacts.impacts;
+  counters_.impacts_capped += impacts.capped;
+  counters_.sweeps += static_cast<std::uint64_t>(solved.sweeps);
+  ++(solved.accepted ? counters_.islands_accepted : counters_.islands_solved);
+  step_residual_ = std::max(step_residual_, solved.residual);
+  store_impulses();
+  if (try_rest(solved.residual)) return;
+  move_bodies(step);
+}
+
+void World::build_problem(std::size_t island, const StepContext& step) {
+  const Islands& islands = scratch_.islands;
+  scratch_.problem.clear();
+  scratch_.problem.h = step.h;
+  scratch_.problem_slot.clear();
+  scratch_.contact_source.clear();
+  scratch_.row_source.clear();
+  for (std::uint32_t i = islands.body_begin[island]; i < islands.body_begin[island + 1]; ++i) {
+    problem_body(islands.bodies[i], step.h);
+  }
+  scratch_.problem_movable = static_cast<std::uint32_t>(scratch_.problem.bodies.size());
+  const auto contact_count = static_cast<std::uint32_t>(contacts_.all().size());
+  for (std::uint32_t i = islands.edge_begin[island]; i < islands.edge_begin[island + 1]; ++i) {
+    const std::uint32_t source = scratch_.edge_source[islands.edges[i]];
+    if (source < contact_count) {
+      add_contact_rows(source, step.h);
+    } else {
+      add_tie_row(source - contact_count, step.h);
+    }
+  }
+  for (const std::uint32_t slot : scratch_.problem_slot) {
+    if (slot != kWorld) scratch_.local[slot] = kWorld;
+  }
+}
+
+std::uint32_t World::problem_body(std::uint32_t slot, double h) {
+  if (slot != kWorld && scratch_.local[slot] != kWorld) return scratch_.local[slot];
+  const auto index = static_cast<std::uint32_t>(scratch_.problem.bodies.size());
+  SolverBody& body = scratch_.problem.bodies.emplace_back();
+  scratch_.problem_slot.push_back(slot);
+  body.v0 = body.w0 = body.v = body.w = body.x = Vec3::Zero();
+  body.q = Quat::Identity();
+  body.inv_mass = 0.0;
+  body.inv_I_W.setZero();
+  if (slot == kWorld) return index;
+  scratch_.local[slot] = index;
+  const Motion& motion = motions_[slot];
+  body.x = motion.x;
+  body.q = motion.q;
+  body.v0 = body.v = motion.v;
+  body.w0 = body.w = motion.w;
+  if (!movable(slot)) return index;
+  const MassProperties& mass = masses_[slot];
+  body.inv_mass = mass.inv_mass;
+  body.inv_I_W = world_inertia(mass.inv_I, mass.q_BP, motion.q);
+  Vec3 L;
+  velocities_after_forces(slot, h, body.v, L);
+  body.w = body.inv_I_W * L;
+  return index;
+}
+
+void World::add_contact_rows(std::uint32_t contact_index, double h) {
+  const Contact& contact = contacts_.all()[contact_index];
+  const std::uint32_t a = problem_body(contact.body_a, h);
+  const std::uint32_t b = problem_body(contact.body_b, h);
+  const Motion& A = motions_[contact.body_a];
+  const Motion& B = motions_[contact.body_b];
+  const Pose& X_AS = geometries_[contact.pair.a].X_BS;
+  const Vec3 x_BA = A.x - B.x;
+  for (int i = 0; i < contact.manifold.count; ++i) {
+    const ManifoldPoint& point = contact.manifold.points[static_cast<std::size_t>(i)];
+    PointContact row;
+    row.a = a;
+    row.b = b;
+    row.n = contact.normal_W;
+    row.rA = A.q * (X_AS * point.p_A);
+    row.rB = row.rA + x_BA;
+    row.separation = point.separation;
+    row.friction = contact.friction;
+    row.restitution = contact.restitution;
+    set_tangents(row);
+    row.lambda.setZero();
+    if (options_.warm_start) {
+      const Vec3& impulse = contact.impulse[static_cast<std::size_t>(i)];
+      row.lambda = Vec3(impulse.dot(row.n), impulse.dot(row.t1), impulse.dot(row.t2));
+    }
+    scratch_.problem.contacts.push_back(row);
+    scratch_.contact_source.push_back({contact_index, static_cast<std::uint32_t>(i)});
+  }
+}
+
+void World::add_tie_row(std::uint32_t tie_index, double h) {
+  const Tie& tie = ties_[tie_index];
+  ScalarRow row;
+  row.a = problem_body(tie.a, h);
+  row.b = problem_body(tie.b, h);
+  const SolverBody& A = scratch_.problem.bodies[row.a];
+  const SolverBody& B = scratch_.problem.bodies[row.b];
+  row.rA = A.q * tie.pA;
+  row.rB = B.q * tie.pB;
+  const Spring* spring = std::get_if<Spring>(&tie.law);
+  const bool acts = spring ? make_spring_row(*spring, A, B, h, row)
+                           : make_rope_row(std::get<Rope>(tie.law), A, B, h, options_.bounds, row);
+  if (!acts) return;
+  if (options_.warm_start) row.lambda = tie.lambda;
+  scratch_.problem.rows.push_back(row);
+  scratch_.row_source.push_back(tie_index);
+}
+
+void World::store_impulses() {
+  for (std::size_t i = 0; i < scratch_.problem.contacts.size(); ++i) {
+    const PointContact& row = scratch_.problem.contacts[i];
+    const Scratch::Source source = scratch_.contact_source[i];
+    const Vec3 impulse = row.lambda.x() * row.n + row.lambda.y() * row.t1 + row.lambda.z() * row.t2;
+    contacts_.all()[source.contact].impulse[source.point] = impulse.allFinite() ? impulse : Vec3(Vec3::Zero());
+  }
+  for (std::size_t i = 0; i < scratch_.problem.rows.size(); ++i) {
+    const double lambda = scratch_.problem.rows[i].lambda;
+    ties_[scratch_.row_source[i]].lambda = std::isfinite(lambda) ? lambda : 0.0;
+  }
+}
+
+bool World::try_rest(double residual) {
+  const auto begin = scratch_.problem_slot.begin();
+  const auto movable_end = begin + scratch_.problem_movable;
+  double calm_for = calm_for_[*begin];
+  for (auto slot = begin; slot != movable_end; ++slot) calm_for = std::min(calm_for, calm_for_[*slot]);
+  bool rests = check_rest(scratch_.problem, residual, options_.rest, calm_for);
+  for (auto slot = begin; slot != movable_end; ++slot) {
+    calm_for_[*slot] = calm_for;
+    rests = rests && !pushed_[*slot];
+  }
+  // A moving kinematic partner will not leave it in peace.
+  for (auto slot = movable_end; slot != scratch_.problem_slot.end(); ++slot) {
+    rests = rests && (*slot == kWorld || !takes_part(*slot));
+  }
+  if (!rests || !options_.skip_resting) return false;
+  for (auto slot = begin; slot != movable_end; ++slot) {
+    motions_[*slot].v.setZero();
+    motions_[*slot].L.setZero();
+    motions_[*slot].w.setZero();
+    awake_flag_[*slot] = 0;
+    const auto next = slot + 1 == movable_end ? begin : slot + 1;
+    rest_next_[*slot] = *next;
+  }
+  ++counters_.rests;
+  active_stale_ = true;
+  return true;
+}
+
+void World::move_bodies(const StepContext& step) {
+  const ContactProblem& problem = scratch_.problem;
+  for (std::uint32_t i = 0; i < scratch_.problem_movable; ++i) {
+    const SolverBody& solved = problem.bodies[i];
+    const std::uint32_t slot = scratch_.problem_slot[i];
+    const MassProperties& mass = masses_[slot];
+    Motion& motion = motions_[slot];
+    const Motion last_good = motion;
+    // Momentum after the forces plus what the impulses changed, so that a body no impulse met keeps its bits.
+    Vec3 v_forces, L_forces;
+    velocities_after_forces(slot, step.h, v_forces, L_forces);
+    const Mat3 I_W = world_inertia(mass.I, mass.q_BP, motion.q);
+    const Vec3 L1 = L_forces + I_W * (solved.w - solved.inv_I_W * L_forces);
+    VelocityPath path{.v0 = solved.v, .v1 = solved.v, .L0 = L1, .L1 = L1};
+    if (problem.drift == ContactProblem::Drift::average) {
+      path.v0 = solved.v0;
+      path.L0 = motion.L + I_W * (solved.w0 - motion.w);
+    }
+    step.integrate(mass, path, step.h, motion);
+    motion.x += solved.shift;
+    if (!solved.turn.isZero(0.0)) {
+      motion.q = normalized(exp_map(solved.turn) * motion.q);
+      motion.w = angular_velocity(mass, motion.q, motion.L);
+    }
+    if (!is_finite(motion)) contain(slot, last_good);
+  }
+}
+
+void World::contain(std::uint32_t slot, const Motion& last_good) {
+  Motion& motion = motions_[slot];
+  motion = last_good;
+  motion.v.setZero();
+  motion.L.setZero();
+  motion.w.setZero();
+  contained_.push_back(id(slot));
+  ++counters_.non_finite_contained;
+}
+
+}  // namespace tumble

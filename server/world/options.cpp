@@ -1,0 +1,67 @@
+// See options.h.
+#include "world/options.h"
+
+#include <fmt/format.h>
+
+#include <string>
+
+namespace tumble {
+
+void set_accuracy(Options& options, Accuracy accuracy) {
+  SolverSettings& solver = options.solver_settings;
+  switch (accuracy) {
+    case Accuracy::fast:
+      solver.max_sweeps = 8;
+      solver.tolerance = 1e-4;
+      break;
+    case Accuracy::balanced:
+      solver.max_sweeps = SolverSettings{}.max_sweeps;
+      solver.tolerance = SolverSettings{}.tolerance;
+      break;
+    case Accuracy::exact:
+      solver.max_sweeps = 1000;
+      solver.tolerance = 1e-9;
+      break;
+  }
+}
+
+std::optional<Accuracy> accuracy_from_name(std::string_view name) {
+  if (name == "fast") return Accuracy::fast;
+  if (name == "balanced") return Accuracy::balanced;
+  if (name == "exact") return Accuracy::exact;
+  return std::nullopt;
+}
+
+std::string check_options(const Options& options) {
+  struct Range {
+    const char* field;
+    double value, low, high;
+  };
+  const Range ranges[] = {
+      {"time step", options.time_step, 1e-6, 0.1},
+      {"gravity", options.gravity.norm(), 0.0, 1e6},
+      {"contact margin", options.contact_margin, 0.0, 1.0},
+      {"fat margin", options.fat_margin, 0.0, 10.0},
+      {"slop", options.bounds.slop, 0.0, 1.0},
+      {"push fraction", options.bounds.push_fraction, 0.0, 1.0},
+      {"push speed", options.bounds.push_speed, 0.0, 1e3},
+      {"restitution threshold", options.restitution_threshold, 0.0, 1e3},
+      {"max impacts", static_cast<double>(options.max_impacts), 1.0, 1e6},
+      {"max sweeps", static_cast<double>(options.solver_settings.max_sweeps), 1.0, 1e6},
+      {"tolerance", options.solver_settings.tolerance, 0.0, 1.0},
+      {"sub steps", static_cast<double>(options.solver_settings.sub_steps), 1.0, 1000.0},
+      {"rest residual", options.rest.residual, 0.0, 1.0},
+      {"rest speed", options.rest.speed, 0.0, 1.0},
+      {"rest acceleration", options.rest.acceleration, 0.0, 10.0},
+      {"calm speed", options.rest.calm_speed, 0.0, 1.0},
+      {"calm time", options.rest.calm_time, 0.0, 1e9},
+  };
+  for (const Range& range : ranges) {
+    if (!(range.value >= range.low && range.value <= range.high)) {
+      return fmt::format("{}: must be {}..{} ({})", range.field, range.low, range.high, range.value);
+    }
+  }
+  return {};
+}
+
+}  // namespace tumble

@@ -1,0 +1,230 @@
+// The step, as a table of contents, and its stages up to the islands. World frame, SI units.
+#include <algorithm>
+#include <cmath>
+
+#include "world/world.h"
+
+namespace tumble {
+
+void World::step() {
+  step([](Stage) {});
+}
+
+void World::step(const std::function<void(Stage)>& stage_done) {
+  StepContext step{.h = options_.time_step,
+                   .integrate = integrate_function(options_.integrator),
+                   .solve = solve_function(options_.solver),
+                   .solver_settings = options_.solver_settings};
+  step.solver_settings.gravity = options_.gravity;
+  apply_pushes(step);
+  stage_done(Stage::commands);
+  update_broad_phase(step);
+  stage_done(Stage::broad_phase);
+  update_contacts(step);
+  stage_done(Stage::narrow_phase);
+  build_islands();
+  stage_done(Stage::islands);
+  advance_islands(step);
+  stage_done(Stage::solve);
+  ++step_count_;
+  update_report();
+  stage_done(Stage::report);
+}
+
+void World::apply_pushes(const StepContext&) {
+  for (const std::uint32_t slot : scratch_.forced) {
+    scratch_.force[slot].setZero();
+    scratch_.torque[slot].setZero();
+    pushed_[slot] = 0;
+  }
+  scratch_.forced.clear();
+  for (ActivePush& active : pushes_) {
+    const Push& push = active.push;
+    const std::uint32_t slot = push.body.index;
+    const Quat& q_WB = motions_[slot].q;
+    const bool turns = push.frame == Push::Frame::body;
+    const double share = std::min(1.0, active.steps_left);
+    const Vec3 force = share * (turns ? q_WB * push.force : push.force);
+    const Vec3 torque = share * (turns ? q_WB * push.torque : push.torque);
+    scratch_.force[slot] += force;
+    // Torque of a force at a point, sums of torques: tau = sum x' x F.
+    scratch_.torque[slot] += torque + (q_WB * push.point_B).cross(force);
+    pushed_[slot] = 1;
+    scratch_.forced.push_back(slot);
+    wake_slot(slot);
+    active.steps_left -= share;
+  }
+  std::erase_if(pushes_, [](const ActivePush& active) { return active.steps_left <= 0.0; });
+}
+
+Pose World::geometry_pose(const Geometry& geometry) const {
+  const Motion& motion = motions_[geometry.body];
+  return Pose{motion.q, motion.x} * geometry.X_BS;
+}
+
+Aabb World::swept_bounds(const Geometry& geometry, double h) const {
+  const Motion& motion = motions_[geometry.body];
+  const Aabb bounds = compute_aabb(geometry.shape, geometry_pose(geometry));
+  if (bodies_[geometry.body].type == BodyType::fixed) return bounds;
+  const double arm = geometry.X_BS.p.norm() + geometry.radius;
+  const double turn = std::min(motion.w.norm() * h * arm, 2.0 * arm);
+  return bounds.grown(0.5 * geometry.contact_margin + turn).swept(h * motion.v);
+}
+
+void World::update_broad_phase(const StepContext& step) {
+  refresh_active();
+  const auto update = [&](std::uint32_t slot) {
+    for (const std::uint32_t index : bodies_[slot].geometries) {
+      const Geometry& geometry = geometries_[index];
+      broad_phase_.move(index, swept_bounds(geometry, step.h), geometry.fat_margin, step.h * motions_[slot].v);
+    }
+  };
+  for (const std::uint32_t slot : awake_) update(slot);
+  for (const std::uint32_t slot : kinematic_) update(slot);
+
+  scratch_.pairs.clear();
+  broad_phase_.update_pairs(scratch_.pairs);
+  std::erase_if(scratch_.pairs, [this](const GeometryPair& pair) {
+    const std::uint32_t a = geometries_[pair.a].body;
+    const std::uint32_t b = geometries_[pair.b].body;
+    return a == b || !(movable(a) || movable(b));
+  });
+  const auto lost = [this](std::uint32_t index) { return !broad_phase_.overlaps(contacts_.all()[index].pair); };
+  if (std::any_of(active_contacts_.begin(), active_contacts_.end(), lost)) {
+    contacts_.remove_if([this](const Contact& contact) { return !broad_phase_.overlaps(contact.pair); });
+    active_stale_ = true;
+  }
+  if (contacts_.insert(scratch_.pairs, [this](GeometryPair pair) { return make_contact(pair); }) > 0) {
+    active_stale_ = true;
+  }
+  refresh_active();
+  counters_.boxes_renewed = broad_phase_.boxes_renewed();
+}
+
+Contact World::make_contact(GeometryPair pair) const {
+  const Geometry& a = geometries_[pair.a];
+  const Geometry& b = geometries_[pair.b];
+  Contact contact;
+  contact.pair = pair;
+  contact.body_a = a.body;
+  contact.body_b = b.body;
+  contact.friction = std::sqrt(a.material.friction * b.material.friction);
+  contact.restitution = std::max(a.material.restitution, b.material.restitution);
+  contact.impulse.fill(Vec3::Zero());
+  return contact;
+}
+
+double World::pair_margin(const Contact& contact, double h) const {
+  const Geometry& a = geometries_[contact.pair.a];
+  const Geometry& b = geometries_[contact.pair.b];
+  // What could close within the step must be seen before it does.
+  const Vec3 v = motions_[contact.body_a].v - motions_[contact.body_b].v;
+  return std::min(a.contact_margin, b.contact_margin) + h * v.norm();
+}
+
+void World::update_contacts(const StepContext& step) {
+  for (const std::uint32_t index : active_contacts_) {
+    Contact& contact = contacts_.all()[index];
+    const Geometry& a = geometries_[contact.pair.a];
+    const Geometry& b = geometries_[contact.pair.b];
+    const Manifold old_manifold = contact.manifold;
+    const Pose X_WA = geometry_pose(a);
+    contact.manifold = collide(a.shape, X_WA, b.shape, geometry_pose(b), pair_margin(contact, step.h),
+                               options_.narrow_phase, contact.cache, counters_.narrow_phase);
+    if (contact.manifold.count == 0) continue;
+    const auto old_impulse = contact.impulse;
+    contact.normal_W = X_WA.q * contact.manifold.normal_A;
+    transport_impulses(old_manifold, old_impulse, contact.manifold, contact.normal_W, a.contact_margin,
+                       contact.impulse);
+    wake_slot(contact.body_a);
+    wake_slot(contact.body_b);
+  }
+  refresh_active();
+}
+
+void World::refresh_active() {
+  if (!active_stale_) return;
+  active_stale_ = false;
+  awake_.clear();
+  kinematic_.clear();
+  for (std::uint32_t slot = 0; slot < body_capacity(); ++slot) {
+    if (!bodies_[slot].exists) continue;
+    if (bodies_[slot].type == BodyType::kinematic) kinematic_.push_back(slot);
+    if (movable(slot) && awake(slot)) awake_.push_back(slot);
+  }
+  active_contacts_.clear();
+  resting_points_ = 0;
+  resting_penetration_ = 0.0;
+  for (std::uint32_t index = 0; index < contacts_.all().size(); ++index) {
+    const Contact& contact = contacts_.all()[index];
+    if (takes_part(contact.body_a) || takes_part(contact.body_b)) {
+      active_contacts_.push_back(index);
+      continue;
+    }
+    resting_points_ += static_cast<std::uint32_t>(contact.manifold.count);
+    resting_penetration_ = std::max(resting_penetration_, deepest(contact.manifold));
+  }
+}
+
+bool World::takes_part(std::uint32_t slot) const {
+  if (movable(slot)) return awake(slot);
+  return bodies_[slot].type == BodyType::kinematic && !(motions_[slot].v.isZero(0.0) && motions_[slot].w.isZero(0.0));
+}
+
+void World::build_islands() {
+  scratch_.edges.clear();
+  scratch_.edge_source.clear();
+  const auto end = [this](std::uint32_t slot) {
+    return slot != kWorld && movable(slot) ? slot : IslandEdge::kImmovable;
+  };
+  for (const std::uint32_t index : active_contacts_) {
+    const Contact& contact = contacts_.all()[index];
+    if (contact.manifold.count == 0) continue;
+    scratch_.edges.push_back({end(contact.body_a), end(contact.body_b)});
+    scratch_.edge_source.push_back(index);
+  }
+  for (std::uint32_t index = 0; index < ties_.size(); ++index) {
+    const IslandEdge edge{end(ties_[index].a), end(ties_[index].b)};
+    const bool a = edge.a != IslandEdge::kImmovable && awake(edge.a);
+    const bool b = edge.b != IslandEdge::kImmovable && awake(edge.b);
+    if (!a && !b) continue;
+    scratch_.edges.push_back(edge);
+    scratch_.edge_source.push_back(static_cast<std::uint32_t>(contacts_.all().size()) + index);
+  }
+  scratch_.builder.build(body_capacity(), awake_, scratch_.edges, scratch_.islands);
+}
+
+void World::advance_islands(const StepContext& step) {
+  contained_.clear();
+  step_residual_ = 0.0;
+  const Islands& islands = scratch_.islands;
+  for (std::size_t island = 0; island < islands.count(); ++island) {
+    if (islands.edge_begin[island] == islands.edge_begin[island + 1]) {
+      advance_free(islands.bodies[islands.body_begin[island]], step);
+    } else {
+      advance_connected(island, step);
+    }
+  }
+  for (const std::uint32_t slot : kinematic_) move_kinematic(motions_[slot], step.h);
+  counters_.bodies_stepped += awake_.size();
+}
+
+void World::update_report() {
+  refresh_active();
+  report_ = StepReport{};
+  report_.bodies_awake = static_cast<std::uint32_t>(awake_.size());
+  report_.bodies_resting = dynamic_count_ - report_.bodies_awake;
+  report_.pairs = static_cast<std::uint32_t>(contacts_.all().size());
+  report_.islands = static_cast<std::uint32_t>(scratch_.islands.count());
+  report_.contacts = resting_points_;
+  report_.deepest_penetration = resting_penetration_;
+  report_.max_residual = step_residual_;
+  for (const std::uint32_t index : active_contacts_) {
+    const Manifold& manifold = contacts_.all()[index].manifold;
+    report_.contacts += static_cast<std::uint32_t>(manifold.count);
+    report_.deepest_penetration = std::max(report_.deepest_penetration, deepest(manifold));
+  }
+  counters_.bodies_skipped_resting += report_.bodies_resting;
+}
+
+}  // namespace tumble

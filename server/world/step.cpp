@@ -62,13 +62,12 @@ Pose World::geometry_pose(const Geometry& geometry) const {
   return Pose{motion.q, motion.x} * geometry.X_BS;
 }
 
-Aabb World::swept_bounds(const Geometry& geometry, double h) const {
-  const Motion& motion = motions_[geometry.body];
+Aabb World::contact_bounds(const Geometry& geometry, double h) const {
   const Aabb bounds = compute_aabb(geometry.shape, geometry_pose(geometry));
   if (bodies_[geometry.body].type == BodyType::fixed) return bounds;
   const double arm = geometry.X_BS.p.norm() + geometry.radius;
-  const double turn = std::min(motion.w.norm() * h * arm, 2.0 * arm);
-  return bounds.grown(0.5 * geometry.contact_margin + turn).swept(h * motion.v);
+  const double turn = std::min(motions_[geometry.body].w.norm() * h * arm, 2.0 * arm);
+  return bounds.grown(geometry.contact_margin + turn);
 }
 
 void World::update_broad_phase(const StepContext& step) {
@@ -76,7 +75,7 @@ void World::update_broad_phase(const StepContext& step) {
   const auto update = [&](std::uint32_t slot) {
     for (const std::uint32_t index : bodies_[slot].geometries) {
       const Geometry& geometry = geometries_[index];
-      broad_phase_.move(index, swept_bounds(geometry, step.h), geometry.fat_margin, step.h * motions_[slot].v);
+      broad_phase_.move(index, contact_bounds(geometry, step.h), geometry.fat_margin, step.h * motions_[slot].v);
     }
   };
   for (const std::uint32_t slot : awake_) update(slot);

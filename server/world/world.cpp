@@ -175,7 +175,7 @@ std::uint32_t World::add_geometry(std::uint32_t slot, const GeometryDefinition& 
   // Slack in proportion to small things, so that gravel does not pair with everything in a hand's breadth.
   geometry.fat_margin = std::min(options_.fat_margin, 0.2 * geometry.radius);
   geometry.contact_margin = std::min(options_.contact_margin, 0.2 * geometry.radius);
-  broad_phase_.add(index, swept_bounds(geometry, options_.time_step), geometry.fat_margin,
+  broad_phase_.add(index, contact_bounds(geometry, options_.time_step), geometry.fat_margin,
                    bodies_[slot].type != BodyType::fixed);
   return index;
 }
@@ -298,7 +298,8 @@ void World::set_motion(BodyId id, const Pose& X_WL, const Vec3& v_WB, const Vec3
   // Its pairs are forgotten: a teleport has no past to warm-start from.
   for (const std::uint32_t index : bodies_[slot].geometries) {
     broad_phase_.remove(index);
-    broad_phase_.add(index, swept_bounds(geometries_[index], options_.time_step), geometries_[index].fat_margin, true);
+    const Geometry& geometry = geometries_[index];
+    broad_phase_.add(index, contact_bounds(geometry, options_.time_step), geometry.fat_margin, true);
   }
   active_stale_ = true;
 }

@@ -155,7 +155,8 @@ class World {
   bool takes_part(std::uint32_t slot) const;
 
   Pose geometry_pose(const Geometry& geometry) const;
-  Aabb swept_bounds(const Geometry& geometry, double h) const;
+  /// Where the geometry, or a contact of it, can be while the body turns through a step of h.
+  Aabb contact_bounds(const Geometry& geometry, double h) const;
   Contact make_contact(GeometryPair pair) const;
   double pair_margin(const Contact& contact, double h) const;
 

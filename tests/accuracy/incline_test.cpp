@@ -19,11 +19,11 @@ Vec3 tilted_gravity(double slope, double heading) {
   return kG * Vec3(std::sin(slope) * std::cos(heading), std::sin(slope) * std::sin(heading), -std::cos(slope));
 }
 
-struct Run {
+struct Slide {
   Vec3 moved, velocity;
 };
 
-Run slide(const Shape& shape, double height, double slope, double heading, double friction, double seconds,
+Slide slide(const Shape& shape, double height, double slope, double heading, double friction, double seconds,
           double time_step = 1.0 / 240.0) {
   Options options;
   options.time_step = time_step;
@@ -43,7 +43,7 @@ TEST(Incline, ABlockSlidesByHalfGSinMinusMuCosTSquaredInAnyDirection) {
   const double slope = 0.5, friction = 0.3, t = 2.0;
   const double a = kG * (std::sin(slope) - friction * std::cos(slope));
   for (const double heading : {0.0, 0.3, 0.7853981633974483, 1.1, 2.0, 4.5}) {
-    const Run result = slide(Box{Vec3(0.5, 0.5, 0.25)}, 0.25, slope, heading, friction, t);
+    const Slide result = slide(Box{Vec3(0.5, 0.5, 0.25)}, 0.25, slope, heading, friction, t);
     EXPECT_LE((result.velocity - a * t * direction(heading)).norm(), 1e-5) << heading;
     EXPECT_LE((result.moved - 0.5 * a * t * t * direction(heading)).norm(), 1e-5) << heading;
   }
@@ -52,9 +52,9 @@ TEST(Incline, ABlockSlidesByHalfGSinMinusMuCosTSquaredInAnyDirection) {
 TEST(Incline, ABlockSticksBelowTheFrictionAngleAndSlidesAboveIt) {
   const double slope = 0.4;
   for (const double excess : {1e-2, 1e-3}) {
-    const Run held = slide(Box{Vec3(0.5, 0.5, 0.25)}, 0.25, slope, 0.3, std::tan(slope) + excess, 5.0);
+    const Slide held = slide(Box{Vec3(0.5, 0.5, 0.25)}, 0.25, slope, 0.3, std::tan(slope) + excess, 5.0);
     EXPECT_LE(held.moved.norm(), 1e-6) << excess;
-    const Run sliding = slide(Box{Vec3(0.5, 0.5, 0.25)}, 0.25, slope, 0.3, std::tan(slope) - excess, 5.0);
+    const Slide sliding = slide(Box{Vec3(0.5, 0.5, 0.25)}, 0.25, slope, 0.3, std::tan(slope) - excess, 5.0);
     const double exact = 0.5 * kG * std::cos(slope) * excess * 25.0;
     EXPECT_NEAR(sliding.moved.norm(), exact, 1e-3 * exact) << excess;
   }
@@ -63,7 +63,7 @@ TEST(Incline, ABlockSticksBelowTheFrictionAngleAndSlidesAboveIt) {
 TEST(Incline, ASphereRollsWithFiveSeventhsOfTheSlidingAcceleration) {
   const double slope = 0.3, t = 2.0;
   const double a = 5.0 / 7.0 * kG * std::sin(slope);
-  const Run result = slide(Sphere{0.5}, 0.5, slope, 0.3, 0.5, t);
+  const Slide result = slide(Sphere{0.5}, 0.5, slope, 0.3, 0.5, t);
   EXPECT_LE((result.velocity - a * t * direction(0.3)).norm(), 1e-9);
   EXPECT_LE((result.moved - 0.5 * a * t * t * direction(0.3)).norm(), 1e-9);
 }

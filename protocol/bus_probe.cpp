@@ -112,18 +112,14 @@ bool loopback_is_up() {
   return up;
 }
 
-std::string sudo() {
-  return ::geteuid() == 0 ? "" : "sudo ";
-}
-
 std::string route_repair() {
-  const std::string up = loopback_is_up() ? "" : sudo() + "ip link set lo up && ";
-  return up + sudo() + "ip route replace 224.0.0.0/4 dev lo";
+  const std::string up = loopback_is_up() ? "" : as_root("ip link set lo up") + " && ";
+  return up + as_root("ip route replace 224.0.0.0/4 dev lo");
 }
 
-std::string firewall_repair(const char* chain, const BusAddress& bus) {
-  return sudo() + "iptables -I " + chain + " -d " + bus.group + " -p udp --dport " +
-         std::to_string(bus.port) + " -j ACCEPT";
+std::string firewall_repair(const std::string& chain, const BusAddress& bus) {
+  return as_root("iptables -I " + chain + " -d " + bus.group + " -p udp --dport " + std::to_string(bus.port) +
+                 " -j ACCEPT");
 }
 
 void report(BusReport& report, BusFault fault, std::string what, std::string repair) {
@@ -251,6 +247,10 @@ std::optional<BusListener::Datagram> BusListener::receive(double timeout) {
 
 int BusListener::receive_buffer() const {
   return get_receive_buffer(socket_);
+}
+
+std::string as_root(const std::string& command) {
+  return ::geteuid() == 0 ? command : "sudo " + command;
 }
 
 std::optional<ShortMessage> parse_short_message(std::string_view bytes) {

@@ -58,6 +58,9 @@ class BusListener {
   int socket_ = -1;
 };
 
+/// The command as it must be typed: with sudo in front unless this process is root.
+std::string as_root(const std::string& command);
+
 /// A datagram of LCM's short form ("LC02"): channel and payload, both views into `bytes`. Nothing if it is not one.
 struct ShortMessage {
   std::string_view channel, payload;

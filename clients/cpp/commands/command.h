@@ -4,6 +4,8 @@
 
 #include <CLI/CLI.hpp>
 #include <functional>
+#include <map>
+#include <memory>
 #include <string>
 
 #include "tumble/world.h"
@@ -35,6 +37,14 @@ void add_doctor(CLI::App& app, const Globals& globals, Action& action);
 /// An option of `size` finite numbers.
 CLI::Option* add_numbers(CLI::App& app, const std::string& name, double* values, int size,
                          const std::string& help);
+
+/// An option that takes one of some words.
+template <typename Value>
+CLI::Option* add_choice(CLI::App& app, const std::string& name, Value& value,
+                        const std::map<std::string, Value>& words, const std::string& help) {
+  const auto store = [&value, words](const std::string& word) { value = words.at(word); };
+  return app.add_option_function<std::string>(name, store, help)->check(CLI::IsMember(words))->type_name("");
+}
 
 /// Prints the server's answer to a command about `subject`; returns the exit status.
 int print_answer(const Globals& globals, const std::string& subject, const Answer& answer);

@@ -51,14 +51,13 @@ void add_step(CLI::App& app, const Globals& globals, Action& action) {
 
 /// A switch argument.
 CLI::Option* add_switch(CLI::App& command, bool& on) {
-  const std::map<std::string, bool> words{{"on", true}, {"off", false}};
-  return command.add_option("SWITCH", on, "on or off")->transform(CLI::CheckedTransformer(words));
+  return add_choice<bool>(command, "SWITCH", on, {{"on", true}, {"off", false}}, "Default on");
 }
 
 void add_streams(CLI::App& app, const Globals& globals, Action& action) {
   auto contacts_on = std::make_shared<bool>(true);
   auto* command = app.add_subcommand("contacts", "Stream the touching points on <WORLD>_CONTACTS: on or off");
-  add_switch(*command, *contacts_on)->required();
+  add_switch(*command, *contacts_on);
   command->callback([&globals, &action, contacts_on] {
     action = [&globals, contacts_on] {
       World world(globals.world_options());

@@ -72,7 +72,7 @@ Finding check_reach(const BusAddress& bus, const BusReport& report) {
   if (bus.ttl == 0) return {Verdict::good, "reach", "this host only (ttl=0 in the URL)", ""};
   if (report.interface == "lo") {
     return {Verdict::warning, "reach", fmt::format("ttl={}, but the route stays on this host (lo)", bus.ttl),
-            "ip route del 224.0.0.0/4 dev lo   # then the default route carries multicast"};
+            as_root("ip route del 224.0.0.0/4 dev lo") + "   # then the default route carries multicast"};
   }
   return {Verdict::good, "reach",
           fmt::format("the local network (ttl={}) over {}", bus.ttl, report.interface), ""};
@@ -86,7 +86,7 @@ Finding check_buffer(const BusReport& report) {
   return {Verdict::warning, "buffer",
           fmt::format("{} kB receive buffer by default: lcm-spy and lcm-logger lose messages of large worlds",
                       report.receive_buffer / 1024),
-          "sysctl -w net.core.rmem_max=4194304 net.core.rmem_default=4194304"};
+          as_root("sysctl -w net.core.rmem_max=4194304 net.core.rmem_default=4194304")};
 }
 
 Finding describe_server(const Server& server) {

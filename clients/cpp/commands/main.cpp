@@ -61,7 +61,11 @@ int read_and_run(int argc, char** argv) {
   try {
     app.parse(read_arguments(argc, argv));
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? kDone : kUsage;
+    if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) return app.exit(error);  // --help
+    const auto chosen = app.get_subcommands();
+    fmt::print(stderr, "tumble: {}\n  try: tumble {}--help\n", error.what(),
+               chosen.empty() ? "" : chosen.front()->get_name() + " ");
+    return kUsage;
   }
   try {
     parse_bus_url(globals.url);

@@ -1,8 +1,4 @@
 // tumble push and tumble torque: a force or torque on a body for a while.
-#include <algorithm>
-#include <map>
-#include <memory>
-
 #include "commands/command.h"
 
 namespace tumble::client {
@@ -18,9 +14,8 @@ void add_common(CLI::App& command, Push& push) {
   command.add_option("--seconds", push.seconds, "How long it acts, simulated [s]; 0: one step")
       ->required()
       ->check(CLI::Range(0.0, kMaxDuration));
-  const std::map<std::string, Frame> frames{{"world", Frame::world}, {"body", Frame::body}};
-  command.add_option("--frame", push.frame, "Axes in which it is given: world (default) or body")
-      ->transform(CLI::CheckedTransformer(frames));
+  add_choice<Frame>(command, "--frame", push.frame, {{"world", Frame::world}, {"body", Frame::body}},
+                    "Axes in which it is given; default world");
   command.add_option("--start-step", push.start_step, "First step it acts in; default: the next one")
       ->check(CLI::NonNegativeNumber);
 }

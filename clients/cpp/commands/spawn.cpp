@@ -1,7 +1,5 @@
 // tumble spawn, set and remove: bodies come, are put somewhere, and go.
 #include <algorithm>
-#include <map>
-#include <memory>
 
 #include "commands/command.h"
 
@@ -58,12 +56,12 @@ void add_spawn_command(CLI::App& app, const Globals& globals, Action& action) {
   auto arguments = std::make_shared<SpawnArguments>();
   Spawn& body = arguments->spawn;
   auto* command = app.add_subcommand("spawn", "Put a new body into the world");
-  const std::map<std::string, std::int8_t> shapes{{"sphere", catalog_t::SHAPE_SPHERE},
-                                                  {"box", catalog_t::SHAPE_BOX},
-                                                  {"capsule", catalog_t::SHAPE_CAPSULE}};
-  command->add_option("SHAPE", body.shape_type, "sphere, box or capsule")
-      ->required()
-      ->transform(CLI::CheckedTransformer(shapes));
+  add_choice<std::int8_t>(*command, "SHAPE", body.shape_type,
+                          {{"sphere", catalog_t::SHAPE_SPHERE},
+                           {"box", catalog_t::SHAPE_BOX},
+                           {"capsule", catalog_t::SHAPE_CAPSULE}},
+                          "What it looks like")
+      ->required();
   command->add_option("--name", body.name, "Its name, new in the world")->required();
   command
       ->add_option("--size", arguments->size,
@@ -80,11 +78,11 @@ void add_spawn_command(CLI::App& app, const Globals& globals, Action& action) {
   command->add_option("--color", arguments->color, "Red, green, blue 0..1, for viewers")
       ->expected(3)
       ->check(CLI::Range(0.0, 1.0));
-  const std::map<std::string, std::int8_t> types{{"dynamic", catalog_t::TYPE_DYNAMIC},
-                                                 {"static", catalog_t::TYPE_STATIC},
-                                                 {"kinematic", catalog_t::TYPE_KINEMATIC}};
-  command->add_option("--type", body.body_type, "dynamic (default), static or kinematic")
-      ->transform(CLI::CheckedTransformer(types));
+  add_choice<std::int8_t>(*command, "--type", body.body_type,
+                          {{"dynamic", catalog_t::TYPE_DYNAMIC},
+                           {"static", catalog_t::TYPE_STATIC},
+                           {"kinematic", catalog_t::TYPE_KINEMATIC}},
+                          "How it moves; default dynamic");
   command->callback([&globals, &action, arguments] {
     take_lists(*arguments);
     action = [&globals, arguments] { return spawn(globals, *arguments); };

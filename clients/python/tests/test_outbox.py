@@ -1,0 +1,66 @@
+"""Resending, answers and giving up, on a clock made of numbers."""
+
+import pytest
+
+from tumble import NoAnswer, Refused, Status
+from tumble.messages import ack_t
+from tumble.outbox import Outbox
+
+
+def answer(outbox: Outbox, sequence: int, status: int, client: int = 0) -> ack_t:
+    message = ack_t()
+    message.n, message.client, message.sequence = 1, [client or outbox.client], [sequence]
+    message.status, message.applied_step, message.detail = [status], [7], ["no such thing" if status > 1 else ""]
+    message.body, message.generation = [3], [0]
+    return message
+
+
+def test_sent_at_once_then_every_50_ms_until_answered() -> None:
+    outbox = Outbox(limit=2.0)
+    future = outbox.add(1, "W_FORCE", b"push", now=10.0)
+    times = [t / 1000 for t in range(10000, 10200) if outbox.take_due(t / 1000)]
+    assert times == pytest.approx([10.0, 10.05, 10.1, 10.15], abs=0.0021)  # looked at every ms
+    outbox.receive(answer(outbox, 1, Status.APPLIED))
+    assert outbox.take_due(10.2) == [] and future.result(0).step == 7
+
+
+def test_given_up_after_the_limit() -> None:
+    outbox = Outbox(limit=2.0)
+    future = outbox.add(1, "W_FORCE", b"push", now=0.0)
+    assert outbox.take_due(1.99) and not future.done()
+    assert outbox.take_due(2.0) == [] and len(outbox) == 0
+    with pytest.raises(NoAnswer):
+        future.result(0)
+
+
+def test_a_refusal_carries_the_reason() -> None:
+    outbox = Outbox(limit=2.0)
+    future = outbox.add(1, "W_FORCE", b"push", now=0.0)
+    outbox.receive(answer(outbox, 1, Status.OUT_OF_RANGE))
+    with pytest.raises(Refused, match="out of range: no such thing") as refused:
+        future.result(0)
+    assert refused.value.answer.status == Status.OUT_OF_RANGE
+
+
+def test_answers_to_others_and_repeated_answers_are_ignored() -> None:
+    outbox = Outbox(limit=2.0)
+    future = outbox.add(1, "W_FORCE", b"push", now=0.0)
+    outbox.receive(answer(outbox, 1, Status.APPLIED, client=outbox.client ^ 2))
+    outbox.receive(answer(outbox, 2, Status.APPLIED))
+    assert not future.done()
+    outbox.receive(answer(outbox, 1, Status.APPLIED))
+    outbox.receive(answer(outbox, 1, Status.EXPIRED))
+    assert future.result(0).accepted
+
+
+def test_a_cancelled_future_is_no_trouble() -> None:
+    outbox = Outbox(limit=2.0)
+    outbox.add(1, "W_FORCE", b"push", now=0.0).cancel()
+    outbox.receive(answer(outbox, 1, Status.APPLIED))
+    assert len(outbox) == 0
+
+
+def test_clients_differ_and_sequences_rise() -> None:
+    one, two = Outbox(2.0), Outbox(2.0)
+    assert one.client != two.client and 0 < one.client < 1 << 63
+    assert [one.next_sequence() for _ in range(3)] == [1, 2, 3]

@@ -1,0 +1,317 @@
+"""The client's picture of the world, merged from the server's messages in whatever order the network delivers them.
+
+The rules: only what changed is sent, so what is not mentioned stays; newer steps win over older ones; a body is gone
+when a catalogue of a newer epoch no longer lists it; a new session starts from nothing. The numbers live in arrays
+indexed by body id, so that a message of a thousand bodies is merged without a loop.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Dict, Iterator, List, Optional, Tuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .messages import catalog_t, state_t
+
+Array = NDArray[np.float64]
+SHAPE_NAMES = {
+    catalog_t.SHAPE_HALF_SPACE: "half_space",
+    catalog_t.SHAPE_SPHERE: "sphere",
+    catalog_t.SHAPE_CAPSULE: "capsule",
+    catalog_t.SHAPE_BOX: "box",
+    catalog_t.SHAPE_HULL: "convex_hull",
+}
+TYPE_NAMES = {catalog_t.TYPE_STATIC: "static", catalog_t.TYPE_DYNAMIC: "dynamic", catalog_t.TYPE_KINEMATIC: "kinematic"}
+
+
+@dataclass(frozen=True)
+class Shape:
+    """One solid of a body; lengths in [m], poses from the centre of mass in link axes."""
+
+    type: str
+    size: Tuple[float, float, float]
+    """sphere: radius; capsule: radius, straight length; box: three edges; else zeros."""
+    position: Tuple[float, float, float]
+    orientation: Tuple[float, float, float, float]
+    friction: float
+    restitution: float
+    color: Tuple[float, float, float, float]
+    num_vertices: int
+    vertices: Dict[int, Tuple[float, float, float]] = field(default_factory=dict)
+    """Of a hull, by number, as far as heard of."""
+
+
+@dataclass
+class Description:
+    """What a body is, from the catalogue."""
+
+    id: int
+    generation: int
+    name: str
+    type: str
+    mass: float
+    inertia: Array
+    """3x3, about the centre of mass, link axes [kg m^2]."""
+    center_of_mass: Array
+    """In the link frame [m]."""
+    num_shapes: int
+    shapes: Dict[int, Shape] = field(default_factory=dict)
+    """By number, as far as heard of."""
+
+    @property
+    def is_complete(self) -> bool:
+        whole = all(len(shape.vertices) == shape.num_vertices for shape in self.shapes.values())
+        return whole and len(self.shapes) == self.num_shapes
+
+
+@dataclass(frozen=True)
+class BodyState:
+    """One body at one time. World frame, SI units; a copy that does not change."""
+
+    name: str
+    step: int
+    """Step of the newest message about it: a body that rests is not sent at every step."""
+    position: Array
+    """Centre of mass [m]."""
+    orientation: Array
+    """(w, x, y, z), link axes to world."""
+    velocity: Array
+    """Of the centre of mass [m/s]."""
+    angular_velocity: Array
+    """[rad/s]"""
+    resting: bool
+
+
+@dataclass(frozen=True)
+class State:
+    """All bodies at one time: row i of every array belongs to names[i]. Copies that do not change."""
+
+    step: int
+    time: float
+    names: List[str]
+    ids: NDArray[np.int64]
+    steps: NDArray[np.int64]
+    positions: Array
+    orientations: Array
+    velocities: Array
+    angular_velocities: Array
+    resting: NDArray[np.bool_]
+
+    def __len__(self) -> int:
+        return len(self.names)
+
+    def __contains__(self, name: object) -> bool:
+        return name in self.names
+
+    def __getitem__(self, name: str) -> BodyState:
+        try:
+            row = self.names.index(name)
+        except ValueError:
+            raise KeyError(name) from None
+        return self._row(row)
+
+    def __iter__(self) -> Iterator[BodyState]:
+        return (self._row(row) for row in range(len(self)))
+
+    def _row(self, row: int) -> BodyState:
+        return BodyState(
+            self.names[row],
+            int(self.steps[row]),
+            self.positions[row],
+            self.orientations[row],
+            self.velocities[row],
+            self.angular_velocities[row],
+            bool(self.resting[row]),
+        )
+
+
+class Picture:
+    def __init__(self) -> None:
+        self._clear(0)
+
+    def _clear(self, session: int) -> None:
+        self.session = session
+        """0: nothing heard yet."""
+        self.step, self.time, self.state_hash = -1, 0.0, 0
+        self.epoch, self.num_bodies = -1, -1
+        self.descriptions: Dict[int, Description] = {}
+        self._ids_by_name: Dict[str, int] = {}
+        self._utime = 0
+        # By id; generation -1: nobody. Columns of `motion`: position, orientation, velocity, angular velocity.
+        self._generation = np.full(0, -1, np.int64)
+        self._epoch = np.zeros(0, np.int64)
+        self._step = np.full(0, -1, np.int64)
+        self._flags = np.zeros(0, np.uint8)
+        self._motion = np.zeros((0, 13))
+
+    def merge_state(self, message: state_t) -> bool:
+        """False if the message was too old to say anything."""
+        if not self._adopt_session(message.session, message.utime):
+            return False
+        # A body that a newer epoch may have removed is not brought back by a message that was overtaken.
+        may_create = message.catalog_epoch >= self.epoch
+        self._note_epoch(message.catalog_epoch, message.num_bodies)
+        if message.step >= self.step:
+            self.step, self.time, self.state_hash = message.step, message.time, message.state_hash
+        if message.n == 0:
+            return True
+        ids, generations = np.array(message.id), np.array(message.generation)
+        self._make_room(int(ids.max()) + 1)
+        if may_create:
+            self._create(ids, generations)
+        known = self._generation[ids] == generations
+        self._epoch[ids[known]] = np.maximum(self._epoch[ids[known]], message.catalog_epoch)
+        use = known & (self._step[ids] <= message.step)
+        rows = ids[use]
+        self._step[rows] = message.step
+        self._flags[rows] = np.array(message.flags, np.int8).view(np.uint8)[use]
+        m = message
+        columns = (m.px, m.py, m.pz, m.qw, m.qx, m.qy, m.qz, m.vx, m.vy, m.vz, m.wx, m.wy, m.wz)
+        self._motion[rows] = np.array(columns).T[use]
+        return True
+
+    def merge_catalog(self, message: catalog_t) -> bool:
+        """False if the message was too old to say anything."""
+        if not self._adopt_session(message.session, message.utime) or message.epoch < self.epoch:
+            return False
+        self._note_epoch(message.epoch, message.num_bodies)
+        self._remove_unlisted(message)
+        self._merge_bodies(message)
+        self._merge_shapes(message)
+        for i in range(message.num_vertices):
+            description = self.descriptions.get(message.vertex_body[i])
+            shape = description.shapes.get(message.vertex_shape[i]) if description else None
+            if shape is not None and 0 <= message.vertex_number[i] < shape.num_vertices:
+                vertex = (message.vertex_x[i], message.vertex_y[i], message.vertex_z[i])
+                shape.vertices[message.vertex_number[i]] = vertex
+        return True
+
+    def find(self, name: str) -> Optional[Description]:
+        id = self._ids_by_name.get(name)
+        return None if id is None else self.descriptions[id]
+
+    def is_placed(self, id: int) -> bool:
+        return id < len(self._step) and bool(self._step[id] >= 0)
+
+    @property
+    def is_complete(self) -> bool:
+        """True if every body of the newest epoch is described with all its shapes, and placed."""
+        return (
+            int(np.count_nonzero(self._generation >= 0)) == len(self.descriptions) == self.num_bodies
+            and all(item.is_complete and self.is_placed(id) for id, item in self.descriptions.items())
+        )
+
+    def body_state(self, description: Description) -> BodyState:
+        motion, id = self._motion[description.id].copy(), description.id
+        resting = bool(self._flags[id] & state_t.FLAG_RESTING)
+        return BodyState(
+            description.name, int(self._step[id]), motion[0:3], motion[3:7], motion[7:10], motion[10:13], resting
+        )
+
+    def snapshot(self) -> State:
+        """A copy of everything that is described and placed, by rising id."""
+        ids = np.array([id for id in sorted(self.descriptions) if self.is_placed(id)], np.int64)
+        motion = self._motion[ids]
+        return State(
+            self.step,
+            self.time,
+            [self.descriptions[id].name for id in ids],
+            ids,
+            self._step[ids],
+            motion[:, 0:3],
+            motion[:, 3:7],
+            motion[:, 7:10],
+            motion[:, 10:13],
+            (self._flags[ids] & state_t.FLAG_RESTING) != 0,
+        )
+
+    def _adopt_session(self, session: int, utime: int) -> bool:
+        if session != self.session:
+            if utime < self._utime:  # a straggler of the session before
+                return False
+            self._clear(session)
+        self._utime = max(self._utime, utime)
+        return True
+
+    def _note_epoch(self, epoch: int, num_bodies: int) -> None:
+        if epoch >= self.epoch:
+            self.epoch, self.num_bodies = epoch, num_bodies
+
+    def _make_room(self, size: int) -> None:
+        more = size - len(self._generation)
+        if more <= 0:
+            return
+        more = max(more, len(self._generation))
+        self._generation = np.append(self._generation, np.full(more, -1, np.int64))
+        self._epoch = np.append(self._epoch, np.zeros(more, np.int64))
+        self._step = np.append(self._step, np.full(more, -1, np.int64))
+        self._flags = np.append(self._flags, np.zeros(more, np.uint8))
+        self._motion = np.append(self._motion, np.zeros((more, 13)), axis=0)
+
+    def _create(self, ids: NDArray[np.int64], generations: NDArray[np.int64]) -> None:
+        """Makes entries where the generation is newer than the known one."""
+        for row in np.flatnonzero(self._generation[ids] < generations):
+            id = int(ids[row])
+            self._forget(id)
+            self._generation[id] = generations[row]
+
+    def _forget(self, id: int) -> None:
+        self._generation[id], self._step[id], self._epoch[id] = -1, -1, 0
+        description = self.descriptions.pop(id, None)
+        if description and self._ids_by_name.get(description.name) == id:
+            del self._ids_by_name[description.name]
+
+    def _remove_unlisted(self, message: catalog_t) -> None:
+        if message.first_id >= message.end_id:
+            return
+        end = len(self._generation) if message.end_id >= message.id_limit else message.end_id
+        present = np.flatnonzero(self._generation[message.first_id : end] >= 0) + message.first_id
+        for id in set(present.tolist()) - set(message.id):
+            if self._epoch[id] < message.epoch:
+                self._forget(id)
+
+    def _merge_bodies(self, message: catalog_t) -> None:
+        if message.n == 0:
+            return
+        ids, generations = np.array(message.id), np.array(message.generation)
+        self._make_room(int(ids.max()) + 1)
+        self._create(ids, generations)
+        for i, id in enumerate(message.id):
+            if self._generation[id] != message.generation[i]:
+                continue
+            self._epoch[id] = max(int(self._epoch[id]), message.epoch)
+            if id in self.descriptions:
+                continue  # constant after creation
+            ixy, ixz, iyz = message.ixy[i], message.ixz[i], message.iyz[i]
+            inertia = np.array(
+                [[message.ixx[i], ixy, ixz], [ixy, message.iyy[i], iyz], [ixz, iyz, message.izz[i]]]
+            )
+            self.descriptions[id] = Description(
+                id,
+                message.generation[i],
+                message.name[i],
+                TYPE_NAMES.get(message.type[i], "?"),
+                message.mass[i],
+                inertia,
+                np.array([message.cx[i], message.cy[i], message.cz[i]]),
+                message.body_shapes[i],
+            )
+            self._ids_by_name[message.name[i]] = id
+
+    def _merge_shapes(self, message: catalog_t) -> None:
+        for i in range(message.num_shapes):
+            description = self.descriptions.get(message.shape_body[i])
+            if description is None or message.shape_number[i] in description.shapes:
+                continue
+            description.shapes[message.shape_number[i]] = Shape(
+                SHAPE_NAMES.get(message.shape_type[i], "?"),
+                (message.size_x[i], message.size_y[i], message.size_z[i]),
+                (message.shape_px[i], message.shape_py[i], message.shape_pz[i]),
+                (message.shape_qw[i], message.shape_qx[i], message.shape_qy[i], message.shape_qz[i]),
+                message.friction[i],
+                message.restitution[i],
+                (message.red[i], message.green[i], message.blue[i], message.alpha[i]),
+                message.shape_vertices[i],
+            )

@@ -1,0 +1,446 @@
+"""A world served somewhere on the bus: its bodies, their states, and commands with the server's answers.
+
+A thread of the World receives and resends; every method may be called from any other thread.
+"""
+
+from __future__ import annotations
+
+import threading
+import time
+from concurrent.futures import Future
+from typing import Any, Callable, Iterator, List, Optional, Sequence, Tuple, Union
+
+import lcm
+
+from .bus import open_bus, resolve_url
+from .errors import NoServer, TumbleError, UnknownBody
+from .messages import ack_t, catalog_t, control_t, force_command_t, heartbeat_t, state_t, stats_t
+from .outbox import Answer, Outbox
+from .picture import Array, BodyState, Description, Picture, State
+
+PROTOCOL_VERSION = 1
+QUEUE_CAPACITY = 10000
+"""Messages LCM keeps for us; its default of 30 is less than one burst of a large world."""
+
+Vector = Sequence[float]
+_FRAMES = {"world": force_command_t.FRAME_WORLD, "body": force_command_t.FRAME_BODY}
+_SHAPES = {"sphere": catalog_t.SHAPE_SPHERE, "capsule": catalog_t.SHAPE_CAPSULE, "box": catalog_t.SHAPE_BOX}
+_TYPES = {"static": catalog_t.TYPE_STATIC, "dynamic": catalog_t.TYPE_DYNAMIC, "kinematic": catalog_t.TYPE_KINEMATIC}
+
+
+class Body:
+    """One body of a world. Properties are the newest the server told; commands wait for its answer.
+
+    `wait=False` returns at once with a concurrent.futures.Future of the Answer: for controllers.
+    """
+
+    def __init__(self, world: "World", description: Description) -> None:
+        self._world = world
+        self.description = description
+
+    @property
+    def name(self) -> str:
+        return self.description.name
+
+    @property
+    def mass(self) -> float:
+        """[kg]; 0 for static and kinematic bodies."""
+        return self.description.mass
+
+    @property
+    def state(self) -> BodyState:
+        return self._world._body_state(self.description)
+
+    @property
+    def position(self) -> Array:
+        """Centre of mass in the world frame [m]."""
+        return self.state.position
+
+    @property
+    def orientation(self) -> Array:
+        """(w, x, y, z), link axes to world."""
+        return self.state.orientation
+
+    @property
+    def velocity(self) -> Array:
+        """Of the centre of mass, world frame [m/s]."""
+        return self.state.velocity
+
+    @property
+    def angular_velocity(self) -> Array:
+        """World frame [rad/s]."""
+        return self.state.angular_velocity
+
+    @property
+    def resting(self) -> bool:
+        return self.state.resting
+
+    def push(
+        self,
+        force: Vector = (0, 0, 0),
+        seconds: float = 0.0,
+        at: Vector = (0, 0, 0),
+        torque: Vector = (0, 0, 0),
+        frame: str = "world",
+        start_step: int = 0,
+        wait: bool = True,
+    ) -> Any:
+        """Force [N] and torque [N m] in the axes of `frame` ("world" or "body"), for simulated `seconds`.
+
+        `seconds=0` is exactly one step. `at` is where the force acts: from the centre of mass, in the body's axes [m];
+        it moves with the body.
+        """
+        command = force_command_t()
+        command.body, command.generation = self.description.id, self.description.generation
+        command.force, command.torque = _floats("force", force, 3), _floats("torque", torque, 3)
+        command.point = _floats("at", at, 3)
+        command.frame = _choose("frame", frame, _FRAMES)
+        command.duration, command.start_step = float(seconds), start_step
+        return self._world._finish(self._world.send(command), wait)
+
+    def torque(self, torque: Vector, seconds: float = 0.0, frame: str = "world", wait: bool = True) -> Any:
+        """Torque [N m] in the axes of `frame`, for simulated `seconds`."""
+        return self.push(torque=torque, seconds=seconds, frame=frame, wait=wait)
+
+    def set(
+        self,
+        at: Vector,
+        orientation: Vector = (1, 0, 0, 0),
+        velocity: Vector = (0, 0, 0),
+        angular_velocity: Vector = (0, 0, 0),
+        wait: bool = True,
+    ) -> Any:
+        """Puts the body somewhere, with a velocity."""
+        command = self._control(control_t.VERB_SET_STATE)
+        _set_motion(command, at, orientation, velocity, angular_velocity)
+        return self._world._finish(self._world.send(command), wait)
+
+    def remove(self, wait: bool = True) -> Any:
+        """Takes the body out of the world."""
+        return self._world._finish(self._world.send(self._control(control_t.VERB_REMOVE)), wait)
+
+    def plot(self, on: bool = True, wait: bool = True) -> Any:
+        """Streams the body on <WORLD>_BODY_<id>, where lcm-spy draws charts of it; or stops that."""
+        verb = control_t.VERB_WATCH if on else control_t.VERB_UNWATCH
+        return self._world._finish(self._world.send(self._control(verb)), wait)
+
+    def _control(self, verb: int) -> control_t:
+        command = _make_control(verb)
+        command.body, command.generation = self.description.id, self.description.generation
+        return command
+
+    def __repr__(self) -> str:
+        return f"<Body {self.name!r} of {self._world.name}>"
+
+
+class World:
+    """Connects to the world `name` on the LCM bus `url` (default: LCM_DEFAULT_URL, else LCM's default).
+
+    Waits `timeout` seconds for the server, for the picture of all bodies, and for every answer. Raises BusError,
+    NoServer, ValueError (wrong URL). `bus`: an lcm.LCM that is open already, handled by this object from now on.
+    """
+
+    def __init__(
+        self, name: str = "TUMBLE", url: str = "", timeout: float = 2.0, bus: Optional[lcm.LCM] = None
+    ) -> None:
+        self.name, self.timeout = name, timeout
+        self.url = resolve_url(url) if bus is None else "the given bus"
+        self._bus = bus or open_bus(self.url)
+        self._picture = Picture()
+        self._outbox = Outbox(timeout)
+        self._heartbeat: Optional[heartbeat_t] = None
+        self._stats: Optional[stats_t] = None
+        self._closing = False
+        self._changed = threading.Condition()
+        self._subscriptions = [self._subscribe(*entry) for entry in self._handlers()]
+        self._thread = threading.Thread(target=self._receive, name=f"tumble {name}", daemon=True)
+        self._thread.start()
+        try:
+            self._wait_for_server()
+        except BaseException:
+            self.close()
+            raise
+
+    # Bodies and states.
+
+    def __getitem__(self, name: str) -> Body:
+        """The body called `name`; UnknownBody (a KeyError) with similar names if there is none."""
+        with self._changed:
+            description = self._picture.find(name)
+            if description is None or not self._picture.is_placed(description.id):
+                raise UnknownBody(name, self.names)
+            return Body(self, description)
+
+    def __contains__(self, name: object) -> bool:
+        with self._changed:
+            description = self._picture.find(str(name))
+            return description is not None and self._picture.is_placed(description.id)
+
+    def __iter__(self) -> Iterator[Body]:
+        """All bodies, by rising id."""
+        with self._changed:
+            known = sorted(self._picture.descriptions.items())
+        return iter([Body(self, description) for _, description in known])
+
+    def __len__(self) -> int:
+        with self._changed:
+            return len(self._picture.descriptions)
+
+    @property
+    def names(self) -> List[str]:
+        with self._changed:
+            return [item.name for _, item in sorted(self._picture.descriptions.items())]
+
+    @property
+    def state(self) -> State:
+        """All bodies now, as numpy arrays; a copy."""
+        with self._changed:
+            return self._picture.snapshot()
+
+    def states(self, timeout: Optional[float] = None) -> Iterator[State]:
+        """Every new state, the newest if the caller is slow. NoServer if none comes for `timeout` seconds."""
+        seen: Tuple[int, int] = (0, -1)
+        while True:
+            with self._changed:
+                if not self._changed.wait_for(lambda: self._newest() != seen or self._closing, timeout):
+                    raise NoServer(f"no state on {self.name}_STATE at {self.url} for {timeout} s")
+                if self._closing:
+                    return
+                seen, state = self._newest(), self._picture.snapshot()
+            yield state
+
+    def _newest(self) -> Tuple[int, int]:
+        return (self._picture.session, self._picture.step)
+
+    @property
+    def step_count(self) -> int:
+        """Steps since the start of the session, as of the newest state."""
+        return self._picture.step
+
+    @property
+    def time(self) -> float:
+        """Simulated time of the newest state [s]."""
+        return self._picture.time
+
+    @property
+    def state_hash(self) -> int:
+        """Of the whole world at step_count, as an unsigned 64-bit number."""
+        return self._picture.state_hash & (1 << 64) - 1
+
+    @property
+    def heartbeat(self) -> heartbeat_t:
+        """The server's newest heartbeat_t."""
+        assert self._heartbeat is not None  # the constructor waited for it
+        return self._heartbeat
+
+    @property
+    def stats(self) -> Optional[stats_t]:
+        """The server's newest stats_t; None before the first."""
+        return self._stats
+
+    def wait_for(self, condition: Callable[[], bool], timeout: Optional[float] = None) -> bool:
+        """Looks at `condition` after every message until it holds (True) or the time is up (False)."""
+        with self._changed:
+            return self._changed.wait_for(condition, self.timeout if timeout is None else timeout)
+
+    # Commands.
+
+    def spawn(
+        self,
+        name: str,
+        shape: str,
+        size: Union[float, Vector],
+        at: Vector,
+        mass: Optional[float] = None,
+        orientation: Vector = (1, 0, 0, 0),
+        velocity: Vector = (0, 0, 0),
+        angular_velocity: Vector = (0, 0, 0),
+        friction: float = 0.5,
+        restitution: float = 0.0,
+        color: Vector = (0.55, 0.65, 0.75),
+        type: str = "dynamic",
+    ) -> Body:
+        """A new body, returned when it has arrived.
+
+        `size` [m]: of a "sphere" its radius, of a "capsule" (radius, straight length), of a "box" its three edges.
+        `mass` [kg]; None: from a density of 1000 kg/m^3. `type`: "dynamic", "static" or "kinematic".
+        """
+        command = _make_control(control_t.VERB_SPAWN)
+        command.name = name
+        command.shape_type, command.body_type = _choose("shape", shape, _SHAPES), _choose("type", type, _TYPES)
+        lengths = [float(size)] if isinstance(size, (int, float)) else [float(length) for length in size]
+        expected = {"sphere": 1, "capsule": 2, "box": 3}[shape]
+        if len(lengths) != expected:
+            raise ValueError(f"size: a {shape} has {expected} length(s), given were {len(lengths)}")
+        command.size = lengths + [0.0] * (3 - expected)
+        command.mass = 0.0 if mass is None else float(mass)
+        _set_motion(command, at, orientation, velocity, angular_velocity)
+        command.friction, command.restitution = float(friction), float(restitution)
+        command.color = (_floats("color", color, 3) + [1.0])
+        answer = self.send(command).result()
+
+        def arrived() -> bool:
+            found = self._picture.find(name)
+            return found is not None and found.generation == answer.generation and self._picture.is_placed(found.id)
+
+        if not self.wait_for(arrived):
+            raise NoServer(f'"{name}" was accepted, but no state of it came within {self.timeout} s')
+        return self[name]
+
+    def remove(self, name: str, wait: bool = True) -> Any:
+        """Takes a body out of the world."""
+        return self[name].remove(wait=wait)
+
+    def pause(self) -> Answer:
+        """Stops simulated time."""
+        return self.send(_make_control(control_t.VERB_PAUSE)).result()
+
+    def resume(self) -> Answer:
+        """Lets simulated time run."""
+        return self.send(_make_control(control_t.VERB_RESUME)).result()
+
+    def step(self, count: int = 1) -> Answer:
+        """Runs `count` steps at full speed, then pauses; returns when the new state has arrived."""
+        command = _make_control(control_t.VERB_STEP)
+        command.count = count
+        answer = self.send(command).result()
+        end, last = answer.step + count, -1
+        while self._picture.step < end and self._picture.step != last:  # as long as there is progress
+            last = self._picture.step
+            self.wait_for(lambda: self._picture.step >= end)
+        if self._picture.step < end:
+            raise NoServer(f"step was accepted, but the world stays at step {last} instead of {end}")
+        return answer
+
+    def reset(self) -> Answer:
+        """The world as it was at the start, in a new session; returns when the new picture is complete."""
+        before = self._picture.session
+        answer = self.send(_make_control(control_t.VERB_RESET)).result()
+        self.wait_for(lambda: self._picture.session != before and self._picture.is_complete)
+        return answer
+
+    def stream_contacts(self, on: bool = True) -> Answer:
+        """Streams the touching points on <WORLD>_CONTACTS, or stops that."""
+        verb = control_t.VERB_CONTACTS_ON if on else control_t.VERB_CONTACTS_OFF
+        return self.send(_make_control(verb)).result()
+
+    def send(self, command: Union[force_command_t, control_t]) -> "Future[Answer]":
+        """Numbers the command, sends it until it is answered; the future ends with an Answer, Refused or NoAnswer."""
+        suffix = "_FORCE" if isinstance(command, force_command_t) else "_CONTROL"
+        with self._changed:
+            if self._closing:
+                raise TumbleError("the world is closed")
+            command.utime = time.time_ns() // 1000
+            # Both tell the session; after a reset the state stream has it first, twice a second the heartbeat.
+            command.session = self._picture.session or self.heartbeat.session
+            command.client, command.sequence = self._outbox.client, self._outbox.next_sequence()
+            future = self._outbox.add(command.sequence, self.name + suffix, command.encode(), time.monotonic())
+            self._send_due()
+        return future
+
+    def _finish(self, future: "Future[Answer]", wait: bool) -> Union[Answer, "Future[Answer]"]:
+        return future.result() if wait else future
+
+    # The receiving thread.
+
+    def close(self) -> None:
+        """Stops listening. Commands that wait for an answer end with NoAnswer."""
+        with self._changed:
+            self._closing = True
+            self._changed.notify_all()
+        if self._thread is not threading.current_thread():
+            self._thread.join()
+        for subscription in self._subscriptions:
+            self._bus.unsubscribe(subscription)
+        self._subscriptions = []
+        with self._changed:
+            self._outbox.take_due(float("inf"))
+
+    def __enter__(self) -> "World":
+        return self
+
+    def __exit__(self, *exception: object) -> None:
+        self.close()
+
+    def _handlers(self) -> List[Tuple[str, Any, Callable[[Any], object]]]:
+        return [
+            ("_STATE", state_t, lambda message: self._picture.merge_state(message)),
+            ("_CATALOG", catalog_t, lambda message: self._picture.merge_catalog(message)),
+            ("_HEARTBEAT", heartbeat_t, lambda message: setattr(self, "_heartbeat", message)),
+            ("_STATS", stats_t, lambda message: setattr(self, "_stats", message)),
+            ("_ACK", ack_t, lambda message: self._outbox.receive(message)),
+        ]
+
+    def _subscribe(self, suffix: str, message_type: Any, use: Callable[[Any], object]) -> Any:
+        def handle(_channel: str, data: bytes) -> None:
+            try:
+                message = message_type.decode(data)
+            except Exception:  # whatever the generated decoder stumbles over: not a message of ours
+                return
+            with self._changed:
+                use(message)
+                self._changed.notify_all()
+
+        subscription = self._bus.subscribe(self.name + suffix, handle)
+        subscription.set_queue_capacity(QUEUE_CAPACITY)
+        return subscription
+
+    def _receive(self) -> None:
+        slice_ms = int(1000 * Outbox.RESEND / 2)
+        while not self._closing:
+            self._bus.handle_timeout(slice_ms)
+            with self._changed:
+                self._send_due()
+
+    def _send_due(self) -> None:
+        for channel, data in self._outbox.take_due(time.monotonic()):
+            self._bus.publish(channel, data)
+
+    def _wait_for_server(self) -> None:
+        if not self.wait_for(lambda: self._heartbeat is not None):
+            channel = f"{self.name}_HEARTBEAT"
+            raise NoServer(f"no server answers on channel {channel} at {self.url}; try: tumble doctor")
+        if self.heartbeat.protocol_version != PROTOCOL_VERSION:
+            version = self.heartbeat.protocol_version
+            raise TumbleError(f"the server speaks protocol version {version}, this client {PROTOCOL_VERSION}")
+        if not self.wait_for(lambda: self._picture.is_complete):
+            heard, total = len(self), self._picture.num_bodies
+            raise NoServer(f"the picture of {self.name} did not become complete ({heard} of {total} bodies)")
+
+    def _body_state(self, description: Description) -> BodyState:
+        with self._changed:
+            current = self._picture.descriptions.get(description.id)
+            if current is None or current.generation != description.generation:
+                raise UnknownBody(description.name, self.names)
+            return self._picture.body_state(description)
+
+    def __repr__(self) -> str:
+        return f"<World {self.name} at {self.url}: {len(self)} bodies, step {self.step_count}>"
+
+
+def _make_control(verb: int) -> control_t:
+    command = control_t()
+    command.verb = verb
+    command.orientation = [1.0, 0.0, 0.0, 0.0]
+    return command
+
+
+def _set_motion(
+    command: control_t, at: Vector, orientation: Vector, velocity: Vector, angular_velocity: Vector
+) -> None:
+    command.position, command.orientation = _floats("at", at, 3), _floats("orientation", orientation, 4)
+    command.velocity = _floats("velocity", velocity, 3)
+    command.angular_velocity = _floats("angular_velocity", angular_velocity, 3)
+
+
+def _floats(field: str, values: Vector, size: int) -> List[float]:
+    numbers = [float(value) for value in values]
+    if len(numbers) != size:
+        raise ValueError(f"{field}: {size} numbers expected, given were {len(numbers)}")
+    return numbers
+
+
+def _choose(field: str, word: str, words: Any) -> int:
+    if word not in words:
+        raise ValueError(f'{field}: "{word}" is not one of {", ".join(words)}')
+    return int(words[word])

@@ -16,12 +16,13 @@ struct AxisPreference {
   /// For shapes whose smaller one has this bounding radius [m]: 1 um and 1 mm on everyday sizes.
   static AxisPreference of(double radius) { return {std::min(1e-6, 1e-6 * radius), std::min(1e-3, 1e-3 * radius)}; }
 
-  /// Edges that cross nearly in a face's plane have that face's normal up to the tilt of the bodies: within 8 degrees
-  /// the face, with its whole polygon of points, is the better contact. Other directions compete on equal terms.
-  bool takes_edge(double face_separation, const Vec3& face_normal, double edge_separation,
-                  const Vec3& edge_normal) const {
-    constexpr double kNearlyParallel = 0.99;
-    const bool near = std::abs(face_normal.dot(edge_normal)) > kNearlyParallel;
+  /// Bodies that lie on each other have edges crossing in the plane of a face; their axis is that face's normal up to
+  /// the tilt of the bodies, or anything if the edges are parallel too. There the face, with its whole polygon of points,
+  /// is the better contact. Other directions compete on equal terms. sin2: of the angle between the edges.
+  bool takes_edge(double face_separation, const Vec3& face_normal, double edge_separation, const Vec3& edge_normal,
+                  double sin2) const {
+    constexpr double kNearlyParallel = 1.0 - 5e-5, kIllDefined = 1e-4;  // both 0.01 rad
+    const bool near = sin2 < kIllDefined || face_normal.dot(edge_normal) > kNearlyParallel;
     return edge_separation > face_separation + (near ? edge : face);
   }
 };

@@ -25,6 +25,7 @@ struct Axis {
   double separation = -std::numeric_limits<double>::infinity();
   Vec3 normal_A = Vec3::UnitZ();  // unit, from A to B
   int i = 0, j = 0;               // faces: i = 0..2 of A, 3..5 of B; edges: axis i of A, j of B
+  double sin2 = 1.0;              // of the angle between the edges
 };
 
 /// The best face axis, or, if `beyond` says so, the first one that separates by more than the margin.
@@ -39,7 +40,7 @@ Axis find_face_axis(const BoxPair& pair, double margin, double preference, bool&
     beyond = separation > margin;
     if (!beyond && separation <= best.separation + preference) continue;
     const double sign = std::copysign(1.0, centre);
-    best = {separation, of_a ? Vec3(sign * Vec3::Unit(k)) : Vec3(sign * pair.R.col(k)), i, 0};
+    best = {separation, of_a ? Vec3(sign * Vec3::Unit(k)) : Vec3(sign * pair.R.col(k)), i};
     if (beyond) return best;
   }
   return best;
@@ -54,7 +55,7 @@ Axis evaluate_edge_axis(const BoxPair& pair, int i, int j, double length, bool h
     if (k != i || honest) extents += pair.a[k] * std::abs(n[k]);
     if (k != j || honest) extents += pair.b[k] * std::abs(n.dot(pair.R.col(k)));
   }
-  return {std::abs(centre) - extents, std::copysign(1.0, centre) * n, i, j};
+  return {std::abs(centre) - extents, std::copysign(1.0, centre) * n, i, j, length * length};
 }
 
 /// The best of the nine crossings, or the first beyond the margin.
@@ -163,7 +164,7 @@ Manifold collide_box_box(const Box& a, const Box& b, const Pose& X_AB, double ma
   Axis best = find_face_axis(pair, margin, preference.face, beyond);
   if (!beyond) {
     const Axis edge = find_edge_axis(pair, margin, best.separation, beyond);
-    crossing = beyond || preference.takes_edge(best.separation, best.normal_A, edge.separation, edge.normal_A);
+    crossing = beyond || preference.takes_edge(best.separation, best.normal_A, edge.separation, edge.normal_A, edge.sin2);
     if (crossing) best = edge;
   }
   cache.axis_A = best.normal_A;

@@ -158,7 +158,7 @@ Manifold collide_core(const CapsuleQuery& q, PairCache& cache) {
     return {};
   }
   if (std::max(face.distance, crossing.distance) <= 0.0) {
-    if (!preference.takes_edge(face.distance, face.normal_P, crossing.distance, crossing.normal_P)) {
+    if (!preference.takes_edge(face.distance, face.normal_P, crossing.distance, crossing.normal_P, 1.0)) {
       return lie_on_face(q, face);
     }
     return lie_on_edge(q, crossing.normal_P, crossing.index);

@@ -78,8 +78,8 @@ Manifold make_manifold(const PolytopePair& pair, const Facet& facet, double marg
     return make_segment_manifold({a, 0.0}, {b, 0.0}, facet.normal_A, margin, merge, mix_features(facet.a, facet.b, 1));
   }
   const bool of_a = facet.kind == Facet::Kind::face_a;
-  const std::uint32_t face_a = of_a ? facet.a : face_along(pair.a, facet.normal_A);
-  const std::uint32_t face_b = of_a ? face_along(pair.b, pair.R_AB.transpose() * -facet.normal_A) : facet.b;
+  const std::uint32_t face_a = of_a ? facet.a : face_towards(pair.a, facet.normal_A);
+  const std::uint32_t face_b = of_a ? face_towards(pair.b, pair.R_AB.transpose() * -facet.normal_A) : facet.b;
   const PlacedFace a{pair.a, pair.a.faces[face_a], identity, zero};
   const PlacedFace b{pair.b, pair.b.faces[face_b], pair.R_AB, pair.p_AB};
   const std::uint32_t faces = mix_features(face_a, face_b, of_a ? 2 : 3);

@@ -103,11 +103,11 @@ Facet FacetSearch::face_facet(std::uint32_t i, double separation) const {
 Facet FacetSearch::edge_facet(std::uint32_t edge_a, std::uint32_t edge_b) {
   const EdgeArc a = arc_of_a(edge_a), b = arc_of_b(edge_b);
   const Vec3 across = a.along.cross(b.along);
-  const double length2 = across.squaredNorm();
-  if (length2 <= kParallel * a.along.squaredNorm() * b.along.squaredNorm()) return {};
+  const double length2 = across.squaredNorm(), sin2 = length2 / (a.along.squaredNorm() * b.along.squaredNorm());
+  if (!(sin2 > kParallel)) return {};
   const double sign = across.dot(a.left + a.right) < 0.0 ? -1.0 : 1.0;
   const Vec3 n = across * (sign / std::sqrt(length2));
-  return {Facet::Kind::edges, edge_a, edge_b, separation_along(n), n};
+  return {Facet::Kind::edges, edge_a, edge_b, separation_along(n), n, sin2};
 }
 
 void FacetSearch::search_faces(double margin, double floor, double lead) {
@@ -193,15 +193,15 @@ void FacetSearch::cross(const EdgeArc& a, const EdgeArc& b) {
   const double al = a.left.dot(b.along), ar = a.right.dot(b.along);
   if (al * ar >= 0.0) return;
   const Vec3 across = a.along.cross(b.along);
-  const double length2 = across.squaredNorm();
-  if (length2 <= kParallel * a.along.squaredNorm() * b.along.squaredNorm()) return;
+  const double length2 = across.squaredNorm(), sin2 = length2 / (a.along.squaredNorm() * b.along.squaredNorm());
+  if (!(sin2 > kParallel)) return;
   const double side = across.dot(a.left + a.right);
   if (side * across.dot(b.left + b.right) <= 0.0) return;
   const Vec3 n = across * ((side < 0.0 ? -1.0 : 1.0) / std::sqrt(length2));
   if (n.dot(b.tail - a.tail) <= best_edges.separation) return;
   // Counted by true supports: arcs that only touch pass the test above by rounding.
   const double separation = separation_along(n);
-  if (separation > best_edges.separation) best_edges = {Facet::Kind::edges, a.index, b.index, separation, n};
+  if (separation > best_edges.separation) best_edges = {Facet::Kind::edges, a.index, b.index, separation, n, sin2};
 }
 
 void FacetSearch::search_edges(double margin, double lead) {
@@ -253,7 +253,7 @@ FacetAnswer find_facet(const PolytopePair& pair, double margin, const AxisPrefer
   answer.facet = search.face_facet(winner, search.height_over(winner, -kInfinity));
   if (search.best_edges.separation > margin ||
       preference.takes_edge(answer.facet.separation, answer.facet.normal_A, search.best_edges.separation,
-                            search.best_edges.normal_A)) {
+                            search.best_edges.normal_A, search.best_edges.sin2)) {
     answer.facet = search.best_edges;
   } else {
     answer.lead = search.lead_of(winner, preference.face);

@@ -20,6 +20,7 @@ struct Facet {
   std::uint32_t a = 0, b = 0;  ///< Face of A or B, or both edges.
   double separation = 0.0;     ///< [m]
   Vec3 normal_A = Vec3::UnitZ();  ///< Unit, from A to B.
+  double sin2 = 1.0;              ///< Of the angle between the edges.
 };
 
 struct FacetAnswer {

@@ -9,12 +9,11 @@ namespace tumble {
 
 void ManifoldBuilder::add(const Vec3& p_A, double separation, std::uint32_t feature) {
   if (!(separation <= margin_)) return;
-  // The first of two merged points stays unless the other is deeper by more than resting bodies move.
-  const double deeper = 1e-5 * merge_;
+  // Of two merged points the first keeps its place, so that rounding can't move it; the depth is that of the deeper.
   for (int i = 0; i < count_; ++i) {
     ManifoldPoint& kept = points_[static_cast<std::size_t>(i)];
     if ((kept.p_A - p_A).squaredNorm() >= merge_ * merge_) continue;
-    if (separation < kept.separation - deeper) kept = {p_A, separation, feature};
+    kept.separation = std::min(kept.separation, separation);
     return;
   }
   if (count_ == kCapacity) reduce();

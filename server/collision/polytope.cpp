@@ -111,12 +111,16 @@ double face_width(const Polytope& polytope, const ConvexHull::Face& face) {
   return perimeter > 0.0 ? area2 / perimeter : 0.0;
 }
 
-std::uint32_t face_along(const Polytope& polytope, const Vec3& d) {
+std::uint32_t face_towards(const Polytope& polytope, const Vec3& d) {
+  const std::uint32_t vertex = descend(polytope, -d, 0, -std::numeric_limits<double>::infinity()).vertex;
   std::uint32_t best = 0;
   double most = -std::numeric_limits<double>::infinity();
-  for (std::uint32_t i = 0; i < polytope.faces.size(); ++i) {
-    const double along = polytope.faces[i].normal.dot(d);
-    if (along > most) best = i, most = along;
+  for (const ConvexHull::Edge& edge : polytope.edges) {
+    if (edge.tail != vertex && edge.head != vertex) continue;
+    for (const std::uint32_t face : {edge.left_face, edge.right_face}) {
+      const double along = polytope.faces[face].normal.dot(d);
+      if (along > most) best = face, most = along;
+    }
   }
   return best;
 }

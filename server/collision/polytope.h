@@ -50,8 +50,9 @@ Lowest descend(const Polytope& polytope, const Vec3& d, std::uint32_t start, dou
 /// Across the face where it is narrow: twice its area over its perimeter, the inradius of regular shapes [m].
 double face_width(const Polytope& polytope, const ConvexHull::Face& face);
 
-/// Face whose normal goes along d the most; the first of equals.
-std::uint32_t face_along(const Polytope& polytope, const Vec3& d);
+/// Among the faces that meet in the furthest vertex along d, the one whose normal goes along d the most: the face that
+/// another body coming from there meets. A function of d alone.
+std::uint32_t face_towards(const Polytope& polytope, const Vec3& d);
 
 struct PointDistance {
   double distance;  ///< < 0 inside [m].

@@ -1,0 +1,75 @@
+// Hulls for tests, built by brute force: random points on an ellipsoid (triangles only, every triple of points with all
+// others on one side), and a box as hull (quads).
+#pragma once
+
+#include <algorithm>
+#include <map>
+#include <memory>
+
+#include "collision/polytope.h"
+#include "random_pose.h"
+
+namespace tumble::test {
+
+/// Edges, neighbours and radius from vertices, loops and faces.
+inline HullPointer finish_hull(ConvexHull hull) {
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> face_of;
+  for (std::uint32_t f = 0; f < hull.faces.size(); ++f) {
+    const auto& face = hull.faces[f];
+    for (std::uint32_t i = 0; i < face.count; ++i) {
+      face_of[{hull.loops[face.first + i], hull.loops[face.first + (i + 1) % face.count]}] = f;
+    }
+  }
+  std::vector<std::vector<std::uint32_t>> neighbours(hull.vertices.size());
+  for (const auto& [ends, face] : face_of) {
+    neighbours[ends.first].push_back(ends.second);
+    if (ends.first < ends.second) {
+      hull.edges.push_back({ends.first, ends.second, face, face_of.at({ends.second, ends.first})});
+    }
+  }
+  hull.neighbour_offsets = {0};
+  for (const auto& list : neighbours) {
+    hull.neighbours.insert(hull.neighbours.end(), list.begin(), list.end());
+    hull.neighbour_offsets.push_back(static_cast<std::uint32_t>(hull.neighbours.size()));
+  }
+  for (const Vec3& v : hull.vertices) hull.radius = std::max(hull.radius, v.norm());
+  return std::make_shared<const ConvexHull>(std::move(hull));
+}
+
+inline HullPointer random_hull(RandomPose& random, int points, const Vec3& radii) {
+  ConvexHull hull;
+  for (int i = 0; i < points; ++i) {
+    const Vec3 d = random.direction();
+    hull.vertices.push_back(d.cwiseProduct(radii));
+  }
+  const std::uint32_t n = static_cast<std::uint32_t>(points);
+  for (std::uint32_t i = 0; i < n; ++i) {
+    for (std::uint32_t j = 0; j < n; ++j) {
+      for (std::uint32_t k = 0; k < n; ++k) {
+        if (j <= i || k <= i || j == k) continue;
+        const Vec3 normal = (hull.vertices[j] - hull.vertices[i]).cross(hull.vertices[k] - hull.vertices[i]).normalized();
+        const double offset = normal.dot(hull.vertices[i]);
+        bool outer = true;
+        for (std::uint32_t m = 0; m < n && outer; ++m) {
+          outer = m == i || m == j || m == k || normal.dot(hull.vertices[m]) < offset;
+        }
+        if (!outer) continue;
+        hull.faces.push_back({normal, offset, static_cast<std::uint32_t>(hull.loops.size()), 3});
+        hull.loops.insert(hull.loops.end(), {i, j, k});
+      }
+    }
+  }
+  return finish_hull(std::move(hull));
+}
+
+inline HullPointer box_hull(const Box& box) {
+  const BoxFeatures features(box);
+  const Polytope view = features.view();
+  ConvexHull hull;
+  hull.vertices.assign(view.vertices.begin(), view.vertices.end());
+  hull.faces.assign(view.faces.begin(), view.faces.end());
+  hull.loops.assign(view.loops.begin(), view.loops.end());
+  return finish_hull(std::move(hull));
+}
+
+}  // namespace tumble::test

@@ -5,7 +5,7 @@ import random
 import time
 
 import lcm
-from tumble.types import (ack_t, body_state_t, catalog_t, control_t, force_command_t, heartbeat_t, state_t, stats_t)
+from tumble.messages import (ack_t, body_state_t, catalog_t, control_t, force_command_t, heartbeat_t, state_t, stats_t)
 
 TYPES = {"STATE": state_t, "STATS": stats_t, "CATALOG": catalog_t, "HEARTBEAT": heartbeat_t, "ACK": ack_t}
 

@@ -9,7 +9,7 @@ struct Demo {
 };
 
 constexpr Demo kDemos[] = {
-#include "demo_scenes.inc"
+#include <demo_scenes.inc>
 };
 
 }  // namespace

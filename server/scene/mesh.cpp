@@ -131,7 +131,9 @@ std::vector<Vec3> read_stl_points(std::string_view bytes, const std::string& nam
   if (has_header && bytes.size() == kStlHeader + std::uint64_t{kStlTriangle} * read_word(bytes, kStlHeader - 4)) {
     return distinct(read_binary_stl(bytes, name));
   }
-  if (bytes.starts_with("solid")) return distinct(read_ascii_stl(bytes, name));
+  if (bytes.starts_with("solid")) {
+    if (const std::vector<Vec3> points = read_ascii_stl(bytes, name); !points.empty()) return distinct(points);
+  }
   throw MeshError(name + ": neither ASCII nor binary STL (" + std::to_string(bytes.size()) + " bytes" +
                   (has_header ? ", header says " + std::to_string(read_word(bytes, kStlHeader - 4)) + " triangles" : "") +
                   ")");

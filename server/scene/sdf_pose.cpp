@@ -32,8 +32,10 @@ Quat rotation_from_rpy(double roll, double pitch, double yaw) {
 }
 
 Quat rotation_to_normal(const Vec3& n) {
-  if (n.z() <= -1.0 + 1e-15) return Quat(0.0, 1.0, 0.0, 0.0);
-  return normalized(Quat(1.0 + n.z(), -n.y(), n.x(), 0.0));
+  const double across2 = n.x() * n.x() + n.y() * n.y();
+  if (n.z() < 0.0 && across2 < 1e-32) return Quat(0.0, 1.0, 0.0, 0.0);
+  const double w = n.z() < 0.0 ? across2 / (1.0 - n.z()) : 1.0 + n.z();  // 1 + n_z without its cancellation
+  return normalized(Quat(w, -n.y(), n.x(), 0.0));
 }
 
 Pose chained(const std::optional<Pose>& X_AB, const std::optional<Pose>& X_BC) {

@@ -17,10 +17,12 @@ std::string to_text(const Quat& q) {
   return to_text(q.x()) + " " + to_text(q.y()) + " " + to_text(q.z()) + " " + to_text(q.w());
 }
 
-/// An element that is closed at the end of its scope.
+/// An element that is closed at the end of its scope. The printer keeps a pointer to the name until then.
 class Tag {
  public:
-  Tag(tinyxml2::XMLPrinter& printer, const std::string& tag) : printer_(printer) { printer_.OpenElement(tag.c_str()); }
+  Tag(tinyxml2::XMLPrinter& printer, std::string tag) : printer_(printer), tag_(std::move(tag)) {
+    printer_.OpenElement(tag_.c_str());
+  }
   Tag(tinyxml2::XMLPrinter& printer, const std::string& tag, const std::string& name) : Tag(printer, tag) {
     attribute("name", name);
   }
@@ -33,6 +35,7 @@ class Tag {
 
  private:
   tinyxml2::XMLPrinter& printer_;
+  std::string tag_;
 };
 
 template <class Value>

@@ -20,8 +20,10 @@ namespace {
 constexpr std::size_t kStlHeader = 84, kStlTriangle = 50;  // bytes
 constexpr std::string_view kSpace = " \t\r";
 
-[[noreturn]] void fail(const std::string& name, std::size_t line, const std::string& reason, std::string_view value) {
-  throw MeshError(name + ":" + std::to_string(line) + ": " + reason + " (" + std::string(value.substr(0, 60)) + ")");
+[[noreturn]] void fail(const std::string& name, std::size_t line, const std::string& reason,
+                       std::string_view value) {
+  throw MeshError(name + ":" + std::to_string(line) + ": " + reason + " (" +
+                  std::string(value.substr(0, 60)) + ")");
 }
 
 std::string_view next_token(std::string_view& line) {
@@ -93,7 +95,8 @@ std::vector<Vec3> read_binary_stl(std::string_view bytes, const std::string& nam
         const std::size_t offset = kStlHeader + t * kStlTriangle + 12 * corner + 4 * i;
         p[static_cast<Eigen::Index>(i)] = std::bit_cast<float>(read_word(bytes, offset));
       }
-      if (!p.allFinite()) throw MeshError(name + ": a vertex must be finite (triangle " + std::to_string(t) + ")");
+      if (!p.allFinite())
+        throw MeshError(name + ": a vertex must be finite (triangle " + std::to_string(t) + ")");
       points.push_back(p);
     }
   }
@@ -113,7 +116,8 @@ std::vector<Vec3> read_ascii_stl(std::string_view text, const std::string& name)
 std::string resolve_mesh_path(const std::string& uri, const std::string& directory) {
   std::string path = uri.starts_with("file://") ? uri.substr(7) : uri;
   if (path.empty()) throw MeshError("names no file");
-  if (path.find("://") != std::string::npos) throw MeshError("only paths and file:// are supported (" + uri + ")");
+  if (path.find("://") != std::string::npos)
+    throw MeshError("only paths and file:// are supported (" + uri + ")");
   return (std::filesystem::path(directory) / path).lexically_normal().string();
 }
 
@@ -128,21 +132,25 @@ std::vector<Vec3> read_obj_points(std::string_view text, const std::string& name
 std::vector<Vec3> read_stl_points(std::string_view bytes, const std::string& name) {
   // The length decides: "solid" opens many binary files too.
   const bool has_header = bytes.size() >= kStlHeader;
-  if (has_header && bytes.size() == kStlHeader + std::uint64_t{kStlTriangle} * read_word(bytes, kStlHeader - 4)) {
+  if (has_header &&
+      bytes.size() == kStlHeader + std::uint64_t{kStlTriangle} * read_word(bytes, kStlHeader - 4)) {
     return distinct(read_binary_stl(bytes, name));
   }
   if (bytes.starts_with("solid")) {
-    if (const std::vector<Vec3> points = read_ascii_stl(bytes, name); !points.empty()) return distinct(points);
+    if (const std::vector<Vec3> points = read_ascii_stl(bytes, name); !points.empty())
+      return distinct(points);
   }
-  throw MeshError(name + ": neither ASCII nor binary STL (" + std::to_string(bytes.size()) + " bytes" +
-                  (has_header ? ", header says " + std::to_string(read_word(bytes, kStlHeader - 4)) + " triangles" : "") +
-                  ")");
+  throw MeshError(
+      name + ": neither ASCII nor binary STL (" + std::to_string(bytes.size()) + " bytes" +
+      (has_header ? ", header says " + std::to_string(read_word(bytes, kStlHeader - 4)) + " triangles" : "") +
+      ")");
 }
 
 std::vector<Vec3> read_mesh_points(const std::string& path) {
   std::string extension = std::filesystem::path(path).extension().string();
   for (char& c : extension) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  if (extension != ".obj" && extension != ".stl") throw MeshError(path + ": only .obj and .stl are supported (" + extension + ")");
+  if (extension != ".obj" && extension != ".stl")
+    throw MeshError(path + ": only .obj and .stl are supported (" + extension + ")");
   std::ifstream file(path, std::ios::binary);
   if (!file || std::filesystem::is_directory(path)) throw MeshError(path + ": cannot be read");
   const std::string bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};

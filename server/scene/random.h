@@ -24,7 +24,8 @@ class Random {
   double symmetric() { return static_cast<double>(static_cast<std::int64_t>(word()) >> 11) * 0x1p-52; }
   /// Uniform in the box of half sizes h around the origin.
   Vec3 in_box(const Vec3& h) {
-    const double x = symmetric(), y = symmetric(), z = symmetric();  // one declarator after the other: fixed order
+    const double x = symmetric(), y = symmetric(),
+                 z = symmetric();  // one declarator after the other: fixed order
     return Vec3(x * h.x(), y * h.y(), z * h.z());
   }
   /// Uniform over all rotations: a point of the unit 3-sphere, found by rejection from its cube.

@@ -32,12 +32,14 @@ World build_world(const Scene& scene) {
   }
   for (const SceneSpring& spring : scene.springs) {
     create_named("spring", spring.name, [&] {
-      world.create_spring({spring.name, find_anchor(world, spring.a, "a"), find_anchor(world, spring.b, "b"), spring.spring});
+      world.create_spring(
+          {spring.name, find_anchor(world, spring.a, "a"), find_anchor(world, spring.b, "b"), spring.spring});
     });
   }
   for (const SceneRope& rope : scene.ropes) {
     create_named("rope", rope.name, [&] {
-      world.create_rope({rope.name, find_anchor(world, rope.a, "a"), find_anchor(world, rope.b, "b"), rope.rope});
+      world.create_rope(
+          {rope.name, find_anchor(world, rope.a, "a"), find_anchor(world, rope.b, "b"), rope.rope});
     });
   }
   return world;

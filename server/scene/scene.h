@@ -10,8 +10,8 @@
 namespace tumble {
 
 struct SceneAnchor {
-  std::string body;        ///< Empty: the world.
-  Vec3 p = Vec3::Zero();   ///< In the body's link frame, or in W [m].
+  std::string body;       ///< Empty: the world.
+  Vec3 p = Vec3::Zero();  ///< In the body's link frame, or in W [m].
 };
 
 struct SceneSpring {
@@ -27,7 +27,7 @@ struct SceneRope {
 };
 
 struct Scene {
-  std::string name;        ///< The world's name in the file.
+  std::string name;  ///< The world's name in the file.
   Options options;
   std::vector<BodyDefinition> bodies;
   std::vector<SceneSpring> springs;

@@ -107,7 +107,8 @@ void parse(const std::string& text, const std::string& name, tinyxml2::XMLDocume
     throw SceneError(name + ":" + std::to_string(line) + ": <sdf>: the file has a zero byte (not a text)");
   }
   if (document.Parse(text.data(), text.size()) == tinyxml2::XML_SUCCESS) return;
-  throw SceneError(name + ":" + std::to_string(std::max(document.ErrorLineNum(), 1)) + ": <sdf>: not well-formed XML (" +
+  throw SceneError(name + ":" + std::to_string(std::max(document.ErrorLineNum(), 1)) +
+                   ": <sdf>: not well-formed XML (" +
                    tinyxml2::XMLDocument::ErrorIDToName(document.ErrorID()) + ")");
 }
 
@@ -135,7 +136,8 @@ SceneReading read_sdf_text(const std::string& text, const std::string& name, con
 
 SceneReading read_sdf(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
-  if (!file || std::filesystem::is_directory(path)) throw SceneError(path + ":0: <sdf>: the file cannot be read");
+  if (!file || std::filesystem::is_directory(path))
+    throw SceneError(path + ":0: <sdf>: the file cannot be read");
   const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
   return read_sdf_text(text, path, std::filesystem::path(path).parent_path().string());
 }

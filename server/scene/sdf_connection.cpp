@@ -16,7 +16,8 @@ SceneAnchor read_anchor(SdfElement anchor, const Bodies& bodies) {
   result.body = anchor.attribute("body").value_or("");
   result.p = anchor.to_vector();
   if (result.body == "world") result.body.clear();
-  if (!result.body.empty() && !bodies.contains(result.body)) anchor.fail_attribute("body", "unknown body", result.body);
+  if (!result.body.empty() && !bodies.contains(result.body))
+    anchor.fail_attribute("body", "unknown body", result.body);
   return result;
 }
 
@@ -36,7 +37,8 @@ double read_anchors(SdfElement& element, const Bodies& bodies, Connection& conne
   if (!is_movable(connection.a, bodies) && !is_movable(connection.b, bodies)) {
     element.fail("neither end is at a dynamic body", connection.name);
   }
-  if (connection.a.body == connection.b.body) element.fail("both ends are at the same body", connection.a.body);
+  if (connection.a.body == connection.b.body)
+    element.fail("both ends are at the same body", connection.a.body);
   return (position(connection.b, bodies) - position(connection.a, bodies)).norm();
 }
 

@@ -39,7 +39,9 @@ std::vector<std::string_view> split(std::string_view text) {
   return tokens;
 }
 
-bool is_blank(const tinyxml2::XMLText& text) { return trimmed(text.Value()).empty(); }
+bool is_blank(const tinyxml2::XMLText& text) {
+  return trimmed(text.Value()).empty();
+}
 
 bool is_same(const tinyxml2::XMLElement& a, const tinyxml2::XMLElement& b) {
   if (std::strcmp(a.Name(), b.Name()) != 0) return false;
@@ -66,10 +68,16 @@ std::string shortest(Number value) {
 
 }  // namespace
 
-std::string to_shortest_text(double value) { return shortest(value); }
-std::string to_shortest_text(float value) { return shortest(value); }
+std::string to_shortest_text(double value) {
+  return shortest(value);
+}
+std::string to_shortest_text(float value) {
+  return shortest(value);
+}
 
-std::string_view SdfElement::tag() const { return xml_->Name(); }
+std::string_view SdfElement::tag() const {
+  return xml_->Name();
+}
 
 std::string SdfElement::where(std::string_view label) const {
   return file_->name + ":" + std::to_string(xml_->GetLineNum()) + ": <" + shown(label) + ">";
@@ -79,13 +87,16 @@ void SdfElement::fail_at(std::string_view label, std::string_view message) const
   throw SceneError(where(label) + ": " + std::string(message));
 }
 
-void SdfElement::fail(std::string_view reason) const { fail_at(tag(), reason); }
+void SdfElement::fail(std::string_view reason) const {
+  fail_at(tag(), reason);
+}
 
 void SdfElement::fail(std::string_view reason, std::string_view value) const {
   fail_at(tag(), std::string(reason) + " (" + shown(trimmed(value)) + ")");
 }
 
-void SdfElement::fail_attribute(std::string_view name, std::string_view reason, std::string_view value) const {
+void SdfElement::fail_attribute(std::string_view name, std::string_view reason,
+                                std::string_view value) const {
   fail_at(std::string(tag()) + " " + std::string(name), std::string(reason) + " (" + shown(value) + ")");
 }
 
@@ -93,9 +104,10 @@ void SdfElement::warn_ignored(std::string_view reason) const {
   file_->warnings.push_back(where(tag()) + " is ignored: " + std::string(reason));
 }
 
-void SdfElement::warn_attribute_ignored(std::string_view name, std::string_view reason, std::string_view value) const {
-  file_->warnings.push_back(where(std::string(tag()) + " " + std::string(name)) + " is ignored: " +
-                            std::string(reason) + " (" + shown(value) + ")");
+void SdfElement::warn_attribute_ignored(std::string_view name, std::string_view reason,
+                                        std::string_view value) const {
+  file_->warnings.push_back(where(std::string(tag()) + " " + std::string(name)) +
+                            " is ignored: " + std::string(reason) + " (" + shown(value) + ")");
 }
 
 std::optional<SdfElement> SdfElement::child(std::string_view tag) {
@@ -103,7 +115,8 @@ std::optional<SdfElement> SdfElement::child(std::string_view tag) {
   tinyxml2::XMLElement* found = xml_->FirstChildElement(name.c_str());
   if (!found) return std::nullopt;
   if (tinyxml2::XMLElement* second = found->NextSiblingElement(name.c_str())) {
-    SdfElement(*second, *file_).fail("may stand only once", "first in line " + std::to_string(found->GetLineNum()));
+    SdfElement(*second, *file_)
+        .fail("may stand only once", "first in line " + std::to_string(found->GetLineNum()));
   }
   found->SetUserData(file_);
   return SdfElement(*found, *file_);
@@ -164,7 +177,8 @@ void SdfElement::finish_children() {
     tinyxml2::XMLElement* element = node->ToElement();
     if (!element || element->GetUserData()) continue;
     const SdfElement unknown(*element, *file_);
-    if (unknown.tag().starts_with(kOwnPrefix)) unknown.fail("unknown here", "inside <" + std::string(tag()) + ">");
+    if (unknown.tag().starts_with(kOwnPrefix))
+      unknown.fail("unknown here", "inside <" + std::string(tag()) + ">");
     unknown.warn_ignored(kNotInSubset);
   }
 }
@@ -172,7 +186,8 @@ void SdfElement::finish_children() {
 std::string SdfElement::to_text() {
   std::string text;
   for (const tinyxml2::XMLNode* node = xml_->FirstChild(); node; node = node->NextSibling()) {
-    if (const tinyxml2::XMLElement* element = node->ToElement()) fail("must be a plain value, has a tag", element->Name());
+    if (const tinyxml2::XMLElement* element = node->ToElement())
+      fail("must be a plain value, has a tag", element->Name());
     if (const tinyxml2::XMLText* part = node->ToText()) text += std::string(part->Value()) + " ";
   }
   finish_attributes();
@@ -259,6 +274,8 @@ std::optional<std::string> SdfElement::text(std::string_view tag) {
   return found->to_text();
 }
 
-bool SdfElement::has_same_content(const SdfElement& other) const { return is_same(*xml_, *other.xml_); }
+bool SdfElement::has_same_content(const SdfElement& other) const {
+  return is_same(*xml_, *other.xml_);
+}
 
 }  // namespace tumble

@@ -36,7 +36,8 @@ class SdfElement {
   /// Throws SceneError "FILE:LINE: <tag>: reason (value)".
   [[noreturn]] void fail(std::string_view reason) const;
   [[noreturn]] void fail(std::string_view reason, std::string_view value) const;
-  [[noreturn]] void fail_attribute(std::string_view name, std::string_view reason, std::string_view value) const;
+  [[noreturn]] void fail_attribute(std::string_view name, std::string_view reason,
+                                   std::string_view value) const;
   /// Notes "FILE:LINE: <tag> is ignored: reason".
   void warn_ignored(std::string_view reason) const;
   void warn_attribute_ignored(std::string_view name, std::string_view reason, std::string_view value) const;

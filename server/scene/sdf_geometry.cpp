@@ -18,9 +18,13 @@ Vec3 read_positive_vector(SdfElement element) {
   return v;
 }
 
-Shape read_box(SdfElement& box) { return Box{0.5 * read_positive_vector(box.required_child("size"))}; }
+Shape read_box(SdfElement& box) {
+  return Box{0.5 * read_positive_vector(box.required_child("size"))};
+}
 
-Shape read_sphere(SdfElement& sphere) { return Sphere{sphere.required_child("radius").to_number(Range::positive)}; }
+Shape read_sphere(SdfElement& sphere) {
+  return Sphere{sphere.required_child("radius").to_number(Range::positive)};
+}
 
 Shape read_capsule(SdfElement& capsule) {
   const double radius = capsule.required_child("radius").to_number(Range::positive);
@@ -85,9 +89,11 @@ void read_plane(SdfElement& plane, GeometryDefinition& geometry) {
 void read_geometry(SdfElement geometry, GeometryDefinition& definition) {
   std::vector<SdfElement> shapes =
       geometry.children({"sphere", "box", "capsule", "plane", "mesh", "tumble:convex_hull"});
-  for (const char* unsupported : {"cylinder", "cone", "ellipsoid", "heightmap", "image", "polyline", "empty"}) {
-    geometry.refuse(unsupported, "this geometry is not supported: use sphere, box, capsule, plane, mesh or "
-                                 "tumble:convex_hull");
+  for (const char* unsupported :
+       {"cylinder", "cone", "ellipsoid", "heightmap", "image", "polyline", "empty"}) {
+    geometry.refuse(unsupported,
+                    "this geometry is not supported: use sphere, box, capsule, plane, mesh or "
+                    "tumble:convex_hull");
   }
   geometry.finish();
   if (shapes.empty()) geometry.fail("needs one of sphere, box, capsule, plane, mesh, tumble:convex_hull");
@@ -111,7 +117,9 @@ double read_friction(SdfElement& surface) {
     mu = ode->number("mu", Range::non_negative).value_or(kDefaultFriction);
     if (std::optional<SdfElement> second = ode->child("mu2")) {
       const double mu2 = second->to_number(Range::non_negative);
-      if (mu2 != mu) second->warn_ignored("friction is the same in all directions, <mu> is used (" + second->to_text() + ")");
+      if (mu2 != mu)
+        second->warn_ignored("friction is the same in all directions, <mu> is used (" + second->to_text() +
+                             ")");
     }
     ode->finish();
   }
@@ -125,7 +133,8 @@ double read_restitution(SdfElement& surface) {
   const double restitution = bounce->number("restitution_coefficient", Range::zero_to_one).value_or(0.0);
   if (std::optional<SdfElement> threshold = bounce->child("threshold")) {
     threshold->to_number(Range::non_negative);
-    threshold->warn_ignored("one threshold holds for the whole world, <tumble:restitution_threshold> of <physics>");
+    threshold->warn_ignored(
+        "one threshold holds for the whole world, <tumble:restitution_threshold> of <physics>");
   }
   bounce->finish();
   return restitution;

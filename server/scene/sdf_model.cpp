@@ -21,7 +21,9 @@ Inertia inertia_of_geometries(const BodyDefinition& body) {
 }
 
 Mat3 read_moments(SdfElement& inertia) {
-  const auto diagonal = [&](const char* tag) { return inertia.required_child(tag).to_number(Range::positive); };
+  const auto diagonal = [&](const char* tag) {
+    return inertia.required_child(tag).to_number(Range::positive);
+  };
   const auto product = [&](const char* tag) { return inertia.number(tag).value_or(0.0); };
   const double xx = diagonal("ixx"), yy = diagonal("iyy"), zz = diagonal("izz");
   const double xy = product("ixy"), xz = product("ixz"), yz = product("iyz");
@@ -41,13 +43,15 @@ Mat3 rotated(const Quat& q, const Mat3& M) {
 
 /// The geometries' inertia, scaled to the mass that is given alone.
 Inertia scaled_inertia(SdfElement& inertial, const BodyDefinition& body, double mass) {
-  const bool solid = std::none_of(body.geometries.begin(), body.geometries.end(), [](const GeometryDefinition& g) {
-    return std::holds_alternative<HalfSpace>(g.shape);
-  });
-  if (body.geometries.empty() || !solid) inertial.fail("has a <mass>, but neither <inertia> nor a solid <collision>");
+  const bool solid =
+      std::none_of(body.geometries.begin(), body.geometries.end(),
+                   [](const GeometryDefinition& g) { return std::holds_alternative<HalfSpace>(g.shape); });
+  if (body.geometries.empty() || !solid)
+    inertial.fail("has a <mass>, but neither <inertia> nor a solid <collision>");
   Inertia inertia = inertia_of_geometries(body);
   inertia.moments *= mass / inertia.mass;
   inertia.mass = mass;
+  if (const std::string reason = check_inertia(inertia); !reason.empty()) inertial.fail(reason);
   return inertia;
 }
 
@@ -64,12 +68,14 @@ void read_inertial(SdfElement& inertial, BodyDefinition& body) {
   }
   const double mass = mass_element ? mass_element->to_number(Range::positive) : 0.0;
   if (automatic == "true") {
-    if (mass_element || moments_element || pose_element) inertial.fail("auto=\"true\" leaves no room for values");
+    if (mass_element || moments_element || pose_element)
+      inertial.fail("auto=\"true\" leaves no room for values");
   } else if (moments_element) {
     if (!mass_element) inertial.fail("has an <inertia>, but no <mass>");
     const Pose X_LI = pose_element ? read_pose(*pose_element) : Pose{};
     body.inertia = Inertia{mass, X_LI.p, rotated(X_LI.q, read_moments(*moments_element))};
-    if (const std::string reason = check_inertia(*body.inertia); !reason.empty()) moments_element->fail(reason);
+    if (const std::string reason = check_inertia(*body.inertia); !reason.empty())
+      moments_element->fail(reason);
   } else {
     if (pose_element) pose_element->fail("needs an <inertia> beside it");
     if (mass_element) body.inertia = scaled_inertia(inertial, body, mass);
@@ -85,12 +91,16 @@ void read_visual(SdfElement& visual, std::vector<SdfElement>& collisions, BodyDe
   while (match < body.geometries.size() && body.geometries[match].name != name) ++match;
   const std::size_t drawn = match < collisions.size() ? match : 0;
   if (geometry) {
-    const std::optional<SdfElement> shape = drawn < collisions.size() ? collisions[drawn].child("geometry") : std::nullopt;
-    if (!shape || !shape->has_same_content(*geometry)) geometry->warn_ignored("viewers draw the collision's shape");
+    const std::optional<SdfElement> shape =
+        drawn < collisions.size() ? collisions[drawn].child("geometry") : std::nullopt;
+    if (!shape || !shape->has_same_content(*geometry))
+      geometry->warn_ignored("viewers draw the collision's shape");
   }
   if (pose) {
-    const std::optional<SdfElement> place = drawn < collisions.size() ? collisions[drawn].child("pose") : std::nullopt;
-    if (!place || !place->has_same_content(*pose)) pose->warn_ignored("viewers draw the collision's shape at its pose");
+    const std::optional<SdfElement> place =
+        drawn < collisions.size() ? collisions[drawn].child("pose") : std::nullopt;
+    if (!place || !place->has_same_content(*pose))
+      pose->warn_ignored("viewers draw the collision's shape at its pose");
   }
   if (std::optional<SdfElement> material = visual.child("material")) {
     if (std::optional<SdfElement> diffuse = material->child("diffuse")) {
@@ -165,6 +175,10 @@ BodyDefinition read_link(SdfElement& link, bool is_static, const std::vector<Bod
   if (body.type == BodyType::dynamic && body.geometries.empty() && !body.inertia) {
     link.fail("needs a <collision> or an <inertial> with mass and inertia");
   }
+  if (body.type == BodyType::dynamic && !body.inertia) {
+    if (const std::string reason = check_inertia(inertia_of_geometries(body)); !reason.empty())
+      link.fail(reason);
+  }
   read_motion(link, body);
   for (SdfElement& visual : link.children({"visual"})) read_visual(visual, collisions, body);
   link.finish();
@@ -221,7 +235,8 @@ SdfModel read_model(SdfElement& element, const FrameLookup& find_frame) {
   return model;
 }
 
-std::vector<BodyDefinition> placed(const SdfModel& model, const std::optional<Pose>& X_WM, const std::string& name) {
+std::vector<BodyDefinition> placed(const SdfModel& model, const std::optional<Pose>& X_WM,
+                                   const std::string& name) {
   std::vector<BodyDefinition> bodies = model.links;
   for (BodyDefinition& body : bodies) {
     body.name = bodies.size() == 1 ? name : name + "::" + body.name;

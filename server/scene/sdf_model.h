@@ -24,7 +24,8 @@ SdfModel read_model(SdfElement& model, const FrameLookup& find_frame);
 
 /// The model's bodies in the world, under another model name if given. A lone link's body has the model's name, one of
 /// several is called model::link.
-std::vector<BodyDefinition> placed(const SdfModel& model, const std::optional<Pose>& X_WM, const std::string& name);
+std::vector<BodyDefinition> placed(const SdfModel& model, const std::optional<Pose>& X_WM,
+                                   const std::string& name);
 
 /// Centre of mass in the link frame: as given, or of the geometries at their densities.
 Vec3 center_of_mass(const BodyDefinition& body);

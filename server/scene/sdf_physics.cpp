@@ -7,16 +7,23 @@
 namespace tumble {
 namespace {
 
-void read_value(SdfElement& element, double& field) { field = element.to_number(); }
-void read_value(SdfElement& element, bool& field) { field = element.to_flag(); }
-void read_value(SdfElement& element, int& field) { field = element.to_integer(0, std::numeric_limits<int>::max()); }
+void read_value(SdfElement& element, double& field) {
+  field = element.to_number();
+}
+void read_value(SdfElement& element, bool& field) {
+  field = element.to_flag();
+}
+void read_value(SdfElement& element, int& field) {
+  field = element.to_integer(0, std::numeric_limits<int>::max());
+}
 
 void check(const SdfElement& element, const Options& options) {
   if (const std::string reason = check_options(options); !reason.empty()) element.fail(reason);
 }
 
 template <class Value>
-void read_name(SdfElement& physics, const char* tag, std::optional<Value> (*from_name)(std::string_view), Value& field) {
+void read_name(SdfElement& physics, const char* tag, std::optional<Value> (*from_name)(std::string_view),
+               Value& field) {
   std::optional<SdfElement> element = physics.child(tag);
   if (!element) return;
   const std::optional<Value> value = from_name(element->to_text());
@@ -43,7 +50,8 @@ void read_pacing(SdfElement& physics, const Options& options) {
 void read_physics(SdfElement& physics, Options& options) {
   physics.attribute("name");
   physics.attribute("default");
-  if (const std::string type = physics.attribute("type").value_or("tumble"); type != "tumble" && type != "ignored") {
+  if (const std::string type = physics.attribute("type").value_or("tumble");
+      type != "tumble" && type != "ignored") {
     physics.warn_attribute_ignored("type", "the engine is Tumble", type);
   }
   Accuracy accuracy = Accuracy::balanced;

@@ -1,8 +1,7 @@
 // See sdf_population.h. Frame P: the population's pose; every arrangement is centred on its origin.
 #include "scene/sdf_population.h"
 
-#include <algorithm>
-#include <cmath>
+#include <array>
 
 #include "math/hash.h"
 #include "scene/random.h"
@@ -19,9 +18,7 @@ struct Region {
   bool round = false;
 
   bool contains(const Vec3& p) const {
-    if (!round) return true;
-    const double x = p.x() / (0.5 * size.x()), y = p.y() / (0.5 * size.y());
-    return x * x + y * y <= 1.0;
+    return !round || p.head<2>().squaredNorm() <= 0.25 * size.x() * size.x();
   }
 };
 
@@ -75,27 +72,38 @@ std::vector<Vec3> arrange_line(const Region& region, int axis, int count) {
   return offsets;
 }
 
-/// The middles of equal cells, with so many cells along each axis that the cells are as cubic as they get.
-std::vector<Vec3> arrange_evenly(const Region& region, int count) {
-  int cells[3] = {1, 1, 1};
-  for (;;) {
-    std::vector<Vec3> offsets;
-    for (int i = 0; i < cells[0] * cells[1] * cells[2]; ++i) {
-      const int index[3] = {i % cells[0], i / cells[0] % cells[1], i / cells[0] / cells[1]};
-      Vec3 p;
-      for (int axis = 0; axis < 3; ++axis) p[axis] = ((index[axis] + 0.5) / cells[axis] - 0.5) * region.size[axis];
-      if (region.contains(p)) offsets.push_back(p);
+/// The middles of the cells inside the region, cells[axis] along each axis.
+std::vector<Vec3> cell_middles(const Region& region, const std::array<int, 3>& cells) {
+  std::vector<Vec3> middles;
+  for (int i = 0; i < cells[0] * cells[1] * cells[2]; ++i) {
+    const std::array<int, 3> index = {i % cells[0], i / cells[0] % cells[1], i / cells[0] / cells[1]};
+    Vec3 p;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto axis = static_cast<Eigen::Index>(k);
+      p[axis] = ((index[k] + 0.5) / cells[k] - 0.5) * region.size[axis];
     }
-    if (offsets.size() >= static_cast<std::size_t>(count)) {
-      offsets.resize(static_cast<std::size_t>(count));
-      return offsets;
-    }
-    int longest = 0;
-    for (int axis = 1; axis < 3; ++axis) {
-      if (region.size[axis] / cells[axis] > region.size[longest] / cells[longest]) longest = axis;
-    }
-    ++cells[longest];
+    if (region.contains(p)) middles.push_back(p);
   }
+  return middles;
+}
+
+/// The middles of equal cells that are as cubic as they get.
+std::vector<Vec3> arrange_evenly(const Region& region, int count) {
+  std::array<int, 3> cells = {1, 1, 1};
+  const auto add_cells = [&] {
+    std::size_t longest = 0;
+    const auto length = [&](std::size_t k) { return region.size[static_cast<Eigen::Index>(k)] / cells[k]; };
+    for (std::size_t k = 1; k < 3; ++k) longest = length(k) > length(longest) ? k : longest;
+    ++cells[longest];
+  };
+  while (cells[0] * cells[1] * cells[2] < count) add_cells();
+  std::vector<Vec3> middles = cell_middles(region, cells);
+  while (middles.size() < static_cast<std::size_t>(count)) {  // a cylinder leaves corners empty
+    add_cells();
+    middles = cell_middles(region, cells);
+  }
+  middles.resize(static_cast<std::size_t>(count));
+  return middles;
 }
 
 std::vector<Vec3> arrange_randomly(const Region& region, int count, Random& random) {
@@ -107,11 +115,13 @@ std::vector<Vec3> arrange_randomly(const Region& region, int count, Random& rand
   return offsets;
 }
 
-std::vector<Vec3> arrange(SdfElement& distribution, const std::optional<Region>& region, int count, Random& random) {
+std::vector<Vec3> arrange(SdfElement& distribution, const std::optional<Region>& region, int count,
+                          Random& random) {
   SdfElement type = distribution.required_child("type");
   const std::string name = type.to_text();
   if (name == "grid") return arrange_grid(distribution, count);
-  const bool is_known = name == "random" || name == "uniform" || name == "linear-x" || name == "linear-y" || name == "linear-z";
+  const bool is_known =
+      name == "random" || name == "uniform" || name == "linear-x" || name == "linear-y" || name == "linear-z";
   if (!is_known) type.fail("must be random, uniform, grid, linear-x, linear-y or linear-z", name);
   if (!region || !(region->size.maxCoeff() > 0.0)) {
     distribution.fail("needs a <box> or <cylinder> of the population to fill", name);
@@ -155,7 +165,8 @@ std::vector<BodyDefinition> read_population(SdfElement& population, const FrameL
     const Pose X_PM = chained(Pose{rotation, offsets[i] + shift}, model.X_WM);
     const std::string clone_name = model.name + "_" + std::to_string(i);
     check_body_name(model_element, clone_name);
-    for (BodyDefinition& body : placed(model, chained(X_WP, X_PM), clone_name)) bodies.push_back(std::move(body));
+    for (BodyDefinition& body : placed(model, chained(X_WP, X_PM), clone_name))
+      bodies.push_back(std::move(body));
   }
   return bodies;
 }

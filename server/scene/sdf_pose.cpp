@@ -8,9 +8,9 @@
 namespace tumble {
 namespace {
 
-constexpr double kLargestAngle = 1e6;                      // [rad]; sincos reduces exactly up to 1.6e6
-constexpr double kDegree = 0.017453292519943295769;        // [rad]
-constexpr double kUnitSlack = 1e-14;                       // of |q|^2; one normalisation leaves less than 1e-15
+constexpr double kLargestAngle = 1e6;                // [rad]; sincos reduces exactly up to 1.6e6
+constexpr double kDegree = 0.017453292519943295769;  // [rad]
+constexpr double kUnitSlack = 1e-14;                 // of |q|^2; one normalisation leaves less than 1e-15
 
 Quat read_quaternion(SdfElement& pose, const std::vector<double>& n) {
   const Quat q(n[6], n[3], n[4], n[5]);

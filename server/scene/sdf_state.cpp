@@ -18,6 +18,7 @@ void set_velocity(SdfElement velocity, BodyDefinition& body) {
   if (body.w_WB.isZero(0.0)) return;
   const Vec3 r_W = body.X_WL.q * center_of_mass(body);
   body.v_WB += body.w_WB.cross(r_W);
+  if (!body.v_WB.allFinite()) velocity.fail("overflows at the centre of mass", velocity.to_text());
 }
 
 void set_pose(SdfElement pose, BodyDefinition& body) {

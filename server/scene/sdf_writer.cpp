@@ -9,10 +9,18 @@
 namespace tumble {
 namespace {
 
-std::string to_text(double x) { return to_shortest_text(x); }
-std::string to_text(int i) { return std::to_string(i); }
-std::string to_text(bool flag) { return flag ? "true" : "false"; }
-std::string to_text(const Vec3& v) { return to_text(v.x()) + " " + to_text(v.y()) + " " + to_text(v.z()); }
+std::string to_text(double x) {
+  return to_shortest_text(x);
+}
+std::string to_text(int i) {
+  return std::to_string(i);
+}
+std::string to_text(bool flag) {
+  return flag ? "true" : "false";
+}
+std::string to_text(const Vec3& v) {
+  return to_text(v.x()) + " " + to_text(v.y()) + " " + to_text(v.z());
+}
 std::string to_text(const Quat& q) {
   return to_text(q.x()) + " " + to_text(q.y()) + " " + to_text(q.z()) + " " + to_text(q.w());
 }
@@ -61,7 +69,9 @@ void write_physics(tinyxml2::XMLPrinter& out, const Options& options) {
   write(out, "max_step_size", options.time_step);
   write(out, "tumble:integrator", integrator_name(options.integrator));
   write(out, "tumble:solver", solver_name(options.solver));
-  for_each_option(options, [&](const char* name, const auto& field) { write(out, "tumble:" + std::string(name), field); });
+  for_each_option(options, [&](const char* name, const auto& field) {
+    write(out, "tumble:" + std::string(name), field);
+  });
 }
 
 void write_shape(tinyxml2::XMLPrinter& out, const HalfSpace&) {
@@ -118,7 +128,8 @@ void write_visual(tinyxml2::XMLPrinter& out, const GeometryDefinition& geometry)
   write_geometry(out, geometry);
   Tag material(out, "material");
   std::string color;
-  for (const float channel : geometry.color) color.append(color.empty() ? "" : " ").append(to_shortest_text(channel));
+  for (const float channel : geometry.color)
+    color.append(color.empty() ? "" : " ").append(to_shortest_text(channel));
   write(out, "diffuse", color);
 }
 

@@ -28,11 +28,13 @@ Inertia inertia_of(const BodyDefinition& body) {
 }
 
 const BodyDefinition& find(const Scene& scene, const std::string& name) {
-  return *std::find_if(scene.bodies.begin(), scene.bodies.end(), [&](const auto& body) { return body.name == name; });
+  return *std::find_if(scene.bodies.begin(), scene.bodies.end(),
+                       [&](const auto& body) { return body.name == name; });
 }
 
 TEST(Demo, NamesAreSortedAndEveryTextIsThere) {
-  const std::vector<std::string_view> expected = {"cradle", "incline", "pile", "pyramid", "springs", "tumbling"};
+  const std::vector<std::string_view> expected = {"cradle",  "incline", "pile",
+                                                  "pyramid", "springs", "tumbling"};
   EXPECT_EQ(demo_names(), expected);
   for (const std::string_view name : demo_names()) EXPECT_EQ(demo(name).name, name);
   EXPECT_TRUE(demo_text("nothing").empty());
@@ -59,13 +61,13 @@ TEST(Demo, PileIsAThousandBodiesOfFourKindsFurtherApartThanTheyAreLarge) {
   double nearest = 1.0;
   for (std::size_t i = 0; i < balls.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
-      nearest = std::min(nearest, (balls[i].first - balls[j].first).norm() - balls[i].second - balls[j].second);
+      nearest =
+          std::min(nearest, (balls[i].first - balls[j].first).norm() - balls[i].second - balls[j].second);
     }
-    EXPECT_GT(balls[i].first.z() - balls[i].second, 0.5);                           // above the plane
+    EXPECT_GT(balls[i].first.z() - balls[i].second, 0.5);                              // above the plane
     EXPECT_LT(balls[i].first.head<2>().cwiseAbs().maxCoeff() + balls[i].second, 3.0);  // between the walls
   }
-  EXPECT_GT(nearest, 0.0);  // FILL m measured
-  std::printf("NEAREST %g\n", nearest);
+  EXPECT_GT(nearest, 0.0);  // 0.016 m measured
 }
 
 TEST(Demo, PyramidRowsTouchAndDoNotOverlap) {
@@ -91,7 +93,8 @@ TEST(Demo, TumblingBodiesSpinAboutTheirIntermediateAxis) {
     Eigen::Index axis = 0;
     w_P.cwiseAbs().maxCoeff(&axis);
     const double I = mass.I[axis];
-    const int smaller = static_cast<int>(std::count_if(mass.I.begin(), mass.I.end(), [&](double other) { return other < 0.98 * I; }));
+    const int smaller = static_cast<int>(
+        std::count_if(mass.I.begin(), mass.I.end(), [&](double other) { return other < 0.98 * I; }));
     EXPECT_EQ(smaller, body.name == "wheel" ? 2 : 1) << body.name << " " << mass.I.transpose();
     EXPECT_GT(std::abs(w_P[axis]), 0.99 * w_P.norm());
     EXPECT_LT(std::abs(w_P[axis]), w_P.norm());
@@ -135,7 +138,8 @@ TEST(Demo, SpringsHoldDynamicBodiesApart) {
   const BodyDefinition& weight = find(scene, "weight");
   const Vec3 top = weight.X_WL * Vec3(0, 0, 0.1);
   EXPECT_NEAR((scene.springs[0].a.p - top).norm(), 1.3, 1e-15);
-  EXPECT_GT(top.z() - 0.2 - 2.0 * (0.3 - 2.0 * 9.81 / 200.0), 0.0);  // stays above the ground when it swings through
+  EXPECT_GT(top.z() - 0.2 - 2.0 * (0.3 - 2.0 * 9.81 / 200.0),
+            0.0);  // stays above the ground when it swings through
 }
 
 }  // namespace

@@ -40,7 +40,9 @@ std::string error_of(Read&& read) {
 
 TEST(Mesh, ObjReadsVerticesOnceInOrder) {
   EXPECT_EQ(read_mesh_points(TUMBLE_SCENES_DIR "/meshes/tetrahedron.obj"), kCorner);
-  EXPECT_EQ(read_obj_points("v 0 0 0\r\nvn 1 1 1\n v\t1 0 0 1.0\nv 0 1 0\nv -0 1 0\nv 0 0 1\nf 1//1 2//1 3//1", "m.obj"), kCorner);
+  EXPECT_EQ(read_obj_points(
+                "v 0 0 0\r\nvn 1 1 1\n v\t1 0 0 1.0\nv 0 1 0\nv -0 1 0\nv 0 0 1\nf 1//1 2//1 3//1", "m.obj"),
+            kCorner);
 }
 
 TEST(Mesh, StlOfBothKindsGivesEachPointOnce) {
@@ -51,17 +53,24 @@ TEST(Mesh, StlOfBothKindsGivesEachPointOnce) {
 }
 
 TEST(Mesh, ErrorsNameFileLineAndValue) {
-  EXPECT_EQ(error_of([] { read_obj_points("v 0 0 0\nv 1 x 0\n", "m.obj"); }), "m.obj:2: a vertex needs three numbers ( 1 x 0)");
-  EXPECT_EQ(error_of([] { read_obj_points("v 1 2", "m.obj"); }), "m.obj:1: a vertex needs three numbers ( 1 2)");
-  EXPECT_EQ(error_of([] { read_obj_points("v 1 2 nan", "m.obj"); }), "m.obj:1: a vertex must be finite (nan)");
+  EXPECT_EQ(error_of([] { read_obj_points("v 0 0 0\nv 1 x 0\n", "m.obj"); }),
+            "m.obj:2: a vertex needs three numbers ( 1 x 0)");
+  EXPECT_EQ(error_of([] { read_obj_points("v 1 2", "m.obj"); }),
+            "m.obj:1: a vertex needs three numbers ( 1 2)");
+  EXPECT_EQ(error_of([] { read_obj_points("v 1 2 nan", "m.obj"); }),
+            "m.obj:1: a vertex must be finite (nan)");
   EXPECT_EQ(error_of([] { read_stl_points("solid a\n\nvertex 1 2 1e400\n", "m.stl"); }),
             "m.stl:3: a vertex needs three numbers ( 1 2 1e400)");
-  EXPECT_EQ(error_of([] { read_stl_points(binary_stl({kCorner[0], kCorner[1], kCorner[2]}, 2), "m.stl"); }),
+  EXPECT_EQ(error_of([] {
+              read_stl_points(binary_stl({kCorner[0], kCorner[1], kCorner[2]}, 2), "m.stl");
+            }),
             "m.stl: neither ASCII nor binary STL (134 bytes, header says 2 triangles)");
   EXPECT_EQ(error_of([] { read_stl_points("\x7f" + std::string(99, 'x'), "m.stl"); }),
             "m.stl: neither ASCII nor binary STL (100 bytes, header says 2021161080 triangles)");
-  const std::vector<Vec3> infinite = {kCorner[0], kCorner[1], Vec3(0, 0, std::numeric_limits<double>::infinity())};
-  EXPECT_EQ(error_of([&] { read_stl_points(binary_stl(infinite, 1), "m.stl"); }), "m.stl: a vertex must be finite (triangle 0)");
+  const std::vector<Vec3> infinite = {kCorner[0], kCorner[1],
+                                      Vec3(0, 0, std::numeric_limits<double>::infinity())};
+  EXPECT_EQ(error_of([&] { read_stl_points(binary_stl(infinite, 1), "m.stl"); }),
+            "m.stl: a vertex must be finite (triangle 0)");
   EXPECT_EQ(error_of([] { read_mesh_points("none.stl"); }), "none.stl: cannot be read");
 }
 

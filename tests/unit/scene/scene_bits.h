@@ -19,7 +19,8 @@ class SceneBits {
     for (const BodyDefinition& body : scene.bodies) add(body);
     for (const SceneSpring& spring : scene.springs) {
       add_ends(spring);
-      for (const double x : {spring.spring.rest_length, spring.spring.stiffness, spring.spring.damping}) add(x);
+      for (const double x : {spring.spring.rest_length, spring.spring.stiffness, spring.spring.damping})
+        add(x);
     }
     for (const SceneRope& rope : scene.ropes) {
       add_ends(rope);
@@ -67,7 +68,8 @@ class SceneBits {
       add(face.offset);
     }
     for (const ConvexHull::Edge& edge : hull->edges) {
-      for (const std::uint32_t i : {edge.tail, edge.head, edge.left_face, edge.right_face}) add(std::uint64_t{i});
+      for (const std::uint32_t i : {edge.tail, edge.head, edge.left_face, edge.right_face})
+        add(std::uint64_t{i});
     }
   }
   void add(const GeometryDefinition& geometry) {
@@ -75,7 +77,9 @@ class SceneBits {
     add(std::uint64_t{geometry.shape.index()});
     std::visit([&](const auto& shape) { add(shape); }, geometry.shape);
     add(geometry.X_LS);
-    for (const double x : {geometry.material.friction, geometry.material.restitution, geometry.material.density}) add(x);
+    for (const double x :
+         {geometry.material.friction, geometry.material.restitution, geometry.material.density})
+      add(x);
     for (const float channel : geometry.color) add(std::uint64_t{std::bit_cast<std::uint32_t>(channel)});
   }
   void add(const BodyDefinition& body) {

@@ -26,18 +26,22 @@ inline std::string in_geometry(const std::string& fragment) {
 
 /// A ball in the link, so that it is complete; the fragment from line 6 on.
 inline std::string beside_ball(const std::string& fragment) {
-  return in_link("<collision name='c'><geometry><sphere><radius>0.5</radius></sphere></geometry></collision>\n" +
-                 fragment);
+  return in_link(
+      "<collision name='c'><geometry><sphere><radius>0.5</radius></sphere></geometry></collision>\n" +
+      fragment);
 }
 
 /// A dynamic model of one ball, in one line.
 inline std::string ball_model(const std::string& name, const std::string& more = "") {
   return "<model name='" + name + "'>" + more +
-         "<link name='l'><collision name='c'><geometry><sphere><radius>0.5</radius></sphere></geometry></collision>"
+         "<link name='l'><collision "
+         "name='c'><geometry><sphere><radius>0.5</radius></sphere></geometry></collision>"
          "</link></model>";
 }
 
-inline SceneReading read(const std::string& text) { return read_sdf_text(text, "s.sdf", TUMBLE_SCENES_DIR); }
+inline SceneReading read(const std::string& text) {
+  return read_sdf_text(text, "s.sdf", TUMBLE_SCENES_DIR);
+}
 
 /// The reader's error for a text; empty if it is read.
 inline std::string error_of(const std::string& text) {

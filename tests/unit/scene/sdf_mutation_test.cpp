@@ -12,13 +12,36 @@ namespace tumble {
 namespace {
 
 constexpr int kMutations = 4000;
-constexpr std::size_t kLongest = 6000;  // bytes of a scene that is mutated
+constexpr std::size_t kLongest = 7000;  // bytes of a scene that is mutated
 
-constexpr std::array<const char*, 24> kPieces = {
-    "0", "-1", "nan", "-inf", "1e308", "1e-320", "999999999999", "", " ", "<", ">", "/>", "</model>", "&#0;", "&lt;", "\"", "'",
-    "<pose>1 2</pose>", "<link name='link'>", "<!--", "]]>", "<![CDATA[", "name=''", "\xff\xfe"};
+constexpr std::array<const char*, 24> kPieces = {"0",
+                                                 "-1",
+                                                 "nan",
+                                                 "-inf",
+                                                 "1e308",
+                                                 "1e-320",
+                                                 "999999999999",
+                                                 "",
+                                                 " ",
+                                                 "<",
+                                                 ">",
+                                                 "/>",
+                                                 "</model>",
+                                                 "&#0;",
+                                                 "&lt;",
+                                                 "\"",
+                                                 "'",
+                                                 "<pose>1 2</pose>",
+                                                 "<link name='link'>",
+                                                 "<!--",
+                                                 "]]>",
+                                                 "<![CDATA[",
+                                                 "name=''",
+                                                 "\xff\xfe"};
 
-std::size_t below(Random& random, std::size_t limit) { return static_cast<std::size_t>(random.word() % limit); }
+std::size_t below(Random& random, std::size_t limit) {
+  return static_cast<std::size_t>(random.word() % limit);
+}
 
 /// One to four times: a byte changed, a piece put in, a stretch taken out or doubled, or a number replaced.
 std::string mutated(std::string text, Random& random) {
@@ -58,7 +81,8 @@ TEST(SdfMutation, DamagedScenesAreReadOrRefused) {
     if (demo_text(name).size() <= kLongest) seeds.emplace_back(demo_text(name));
   }
   ASSERT_GE(seeds.size(), 2u);
-  seeds.push_back(write_sdf(read(beside_ball("<velocity_decay><linear>0.5</linear></velocity_decay>")).scene));
+  seeds.push_back(
+      write_sdf(read(beside_ball("<velocity_decay><linear>0.5</linear></velocity_decay>")).scene));
   Random random(20);
   int read_count = 0, refused = 0;
   for (int i = 0; i < kMutations; ++i) {
@@ -71,8 +95,7 @@ TEST(SdfMutation, DamagedScenesAreReadOrRefused) {
       EXPECT_EQ(std::string(error.what()).find("m.sdf:"), 0u) << error.what();
     }
   }
-  std::printf("READ %d\n", read_count);
-  EXPECT_GT(read_count, kMutations / 20);  // FILL of 4000 measured
+  EXPECT_GT(read_count, kMutations / 20);  // 352 of 4000 measured
   EXPECT_GT(refused, kMutations / 20);
 }
 

@@ -32,10 +32,14 @@ TEST(SdfRoundTrip, TestScenes) {
 }
 
 TEST(SdfRoundTrip, MeshesAndTurnedInertia) {
-  expect_round_trip(read(in_link(
-      "<pose>1 2 3 0.4 0.5 0.6</pose><inertial><pose>0.1 0 0 0.3 0.2 0.1</pose><mass>3</mass><inertia><ixx>1</ixx><iyy>2</iyy>"
-      "<izz>2.5</izz></inertia></inertial><collision name='c'><pose>0 0 0 1 1 1</pose><geometry><mesh>"
-      "<uri>meshes/tetrahedron.obj</uri><scale>0.1 0.3 0.7</scale></mesh></geometry></collision>")).scene);
+  expect_round_trip(
+      read(in_link(
+               "<pose>1 2 3 0.4 0.5 0.6</pose><inertial><pose>0.1 0 0 0.3 0.2 "
+               "0.1</pose><mass>3</mass><inertia><ixx>1</ixx><iyy>2</iyy>"
+               "<izz>2.5</izz></inertia></inertial><collision name='c'><pose>0 0 0 1 1 "
+               "1</pose><geometry><mesh>"
+               "<uri>meshes/tetrahedron.obj</uri><scale>0.1 0.3 0.7</scale></mesh></geometry></collision>"))
+          .scene);
 }
 
 TEST(SdfRoundTrip, NoOptionIsLost) {
@@ -75,7 +79,8 @@ TEST(SdfRoundTrip, RandomScenes) {
     geometry.name = "g";
     geometry.X_LS = {random.rotation(), random.in_box(Vec3::Ones())};
     geometry.shape = Capsule{1.0 + random.symmetric(), 1.0 + random.symmetric()};
-    geometry.material = {0.5 + 0.1 * random.symmetric(), 0.5 + 0.1 * random.symmetric(), 1000.0 + random.symmetric()};
+    geometry.material = {0.5 + 0.1 * random.symmetric(), 0.5 + 0.1 * random.symmetric(),
+                         1000.0 + random.symmetric()};
     for (float& channel : geometry.color) channel = static_cast<float>(0.5 + 0.5 * random.symmetric());
     body.geometries.push_back(geometry);
     scene.bodies.push_back(body);

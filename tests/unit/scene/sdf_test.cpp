@@ -17,7 +17,9 @@ BodyDefinition read_body(const std::string& text) {
   return reading.scene.bodies.at(0);
 }
 
-GeometryDefinition read_geometry(const std::string& text) { return read_body(in_geometry(text)).geometries.at(0); }
+GeometryDefinition read_geometry(const std::string& text) {
+  return read_body(in_geometry(text)).geometries.at(0);
+}
 
 TEST(Sdf, EmptyWorldHasTheEnginesDefaultsAndSdfsGravity) {
   const Scene scene = read(in_world("")).scene;
@@ -29,12 +31,14 @@ TEST(Sdf, EmptyWorldHasTheEnginesDefaultsAndSdfsGravity) {
 }
 
 TEST(Sdf, PhysicsTags) {
-  const SceneReading reading = read(in_world(
-      "<gravity>1 -2 3e-1</gravity><physics name='p' type='tumble' default='true'><max_step_size>0.002</max_step_size>"
-      "<real_time_factor>1</real_time_factor><real_time_update_rate>500</real_time_update_rate>"
-      "<tumble:integrator>rk4</tumble:integrator><tumble:solver>soft_step</tumble:solver>"
-      "<tumble:sub_steps>7</tumble:sub_steps><tumble:restitution_threshold>0.25</tumble:restitution_threshold>"
-      "<tumble:warm_start>false</tumble:warm_start></physics>"));
+  const SceneReading reading =
+      read(in_world("<gravity>1 -2 3e-1</gravity><physics name='p' type='tumble' "
+                    "default='true'><max_step_size>0.002</max_step_size>"
+                    "<real_time_factor>1</real_time_factor><real_time_update_rate>500</real_time_update_rate>"
+                    "<tumble:integrator>rk4</tumble:integrator><tumble:solver>soft_step</tumble:solver>"
+                    "<tumble:sub_steps>7</tumble:sub_steps><tumble:restitution_threshold>0.25</"
+                    "tumble:restitution_threshold>"
+                    "<tumble:warm_start>false</tumble:warm_start></physics>"));
   EXPECT_TRUE(reading.warnings.empty());
   const Options& options = reading.scene.options;
   EXPECT_EQ(options.gravity, Vec3(1, -2, 0.3));
@@ -53,13 +57,15 @@ TEST(Sdf, AccuracySetsALevelAndSingleOptionsOverrideIt) {
   EXPECT_EQ(level.options.solver_settings.max_sweeps, fast.solver_settings.max_sweeps);
   EXPECT_EQ(level.options.solver_settings.tolerance, fast.solver_settings.tolerance);
   const Scene both = read(in_world("<physics><tumble:max_sweeps>99</tumble:max_sweeps>"
-                                   "<tumble:accuracy>fast</tumble:accuracy></physics>")).scene;
+                                   "<tumble:accuracy>fast</tumble:accuracy></physics>"))
+                         .scene;
   EXPECT_EQ(both.options.solver_settings.max_sweeps, 99);
   EXPECT_EQ(both.options.solver_settings.tolerance, fast.solver_settings.tolerance);
 }
 
 TEST(Sdf, OldFilesHaveGravityInPhysics) {
-  EXPECT_EQ(read(in_world("<physics><gravity>0 0 -1</gravity></physics>")).scene.options.gravity, Vec3(0, 0, -1));
+  EXPECT_EQ(read(in_world("<physics><gravity>0 0 -1</gravity></physics>")).scene.options.gravity,
+            Vec3(0, 0, -1));
 }
 
 TEST(Sdf, Shapes) {
@@ -68,14 +74,17 @@ TEST(Sdf, Shapes) {
   const Shape capsule = read_geometry("<capsule><radius>0.1</radius><length>3</length></capsule>").shape;
   EXPECT_EQ(std::get<Capsule>(capsule).radius, 0.1);
   EXPECT_EQ(std::get<Capsule>(capsule).half_length, 1.5);
-  const Shape hull = read_geometry("<tumble:convex_hull><tumble:points>0 0 0 1 0 0 0 1 0 0 0 1</tumble:points>"
-                                   "</tumble:convex_hull>").shape;
+  const Shape hull = read_geometry(
+                         "<tumble:convex_hull><tumble:points>0 0 0 1 0 0 0 1 0 0 0 1</tumble:points>"
+                         "</tumble:convex_hull>")
+                         .shape;
   EXPECT_EQ(std::get<HullPointer>(hull)->vertices.size(), 4u);
 }
 
 TEST(Sdf, MeshesBecomeScaledHulls) {
   for (const char* file : {"meshes/tetrahedron.obj", "meshes/tetrahedron.stl"}) {
-    const Shape shape = read_geometry("<mesh><uri>" + std::string(file) + "</uri><scale>2 1 0.5</scale></mesh>").shape;
+    const Shape shape =
+        read_geometry("<mesh><uri>" + std::string(file) + "</uri><scale>2 1 0.5</scale></mesh>").shape;
     const ConvexHull& hull = *std::get<HullPointer>(shape);
     EXPECT_EQ(hull.vertices.size(), 4u);
     EXPECT_EQ(hull.faces.size(), 4u);
@@ -85,10 +94,11 @@ TEST(Sdf, MeshesBecomeScaledHulls) {
 
 TEST(Sdf, PlaneNormalBecomesTheFramesZ) {
   for (const Vec3& n : {Vec3(0, 0, 1), Vec3(1, 0, 0), Vec3(0, -3, 4), Vec3(0, 0, -2), Vec3(1e-9, 0, -1)}) {
-    const std::string text = to_shortest_text(n.x()) + " " + to_shortest_text(n.y()) + " " + to_shortest_text(n.z());
+    const std::string text =
+        to_shortest_text(n.x()) + " " + to_shortest_text(n.y()) + " " + to_shortest_text(n.z());
     const SceneReading reading = read(in_world(
-        "<model name='m'><static>true</static><link name='l'><collision name='c'><geometry><plane><normal>" + text +
-        "</normal></plane></geometry></collision></link></model>"));
+        "<model name='m'><static>true</static><link name='l'><collision name='c'><geometry><plane><normal>" +
+        text + "</normal></plane></geometry></collision></link></model>"));
     const GeometryDefinition& geometry = reading.scene.bodies[0].geometries[0];
     EXPECT_TRUE(std::holds_alternative<HalfSpace>(geometry.shape));
     // 2e-16 measured
@@ -100,25 +110,32 @@ TEST(Sdf, PoseIsRollPitchYawAboutFixedAxes) {
   const Pose X = read_body(beside_ball("<pose>1 2 3 0.1 -0.2 0.3</pose>")).X_WL;
   EXPECT_EQ(X.p, Vec3(1, 2, 3));
   const Mat3 expected = (Eigen::AngleAxisd(0.3, Vec3::UnitZ()) * Eigen::AngleAxisd(-0.2, Vec3::UnitY()) *
-                         Eigen::AngleAxisd(0.1, Vec3::UnitX())).toRotationMatrix();
+                         Eigen::AngleAxisd(0.1, Vec3::UnitX()))
+                            .toRotationMatrix();
   EXPECT_LT((X.q.toRotationMatrix() - expected).norm(), 1e-15);  // 1.7e-16 measured
 }
 
 TEST(Sdf, PoseFormats) {
   const Pose degrees = read_body(beside_ball("<pose degrees='true'>0 0 0 0 0 90</pose>")).X_WL;
   EXPECT_LT((degrees.q * Vec3::UnitX() - Vec3::UnitY()).norm(), 1e-15);
-  const Pose quaternion = read_body(beside_ball("<pose rotation_format='quat_xyzw'>0 0 0 0 0 2 2</pose>")).X_WL;
+  const Pose quaternion =
+      read_body(beside_ball("<pose rotation_format='quat_xyzw'>0 0 0 0 0 2 2</pose>")).X_WL;
   EXPECT_LT((quaternion.q * Vec3::UnitX() - Vec3::UnitY()).norm(), 1e-15);
   EXPECT_NEAR(quaternion.q.norm(), 1.0, 1e-15);
 }
 
 TEST(Sdf, PosesChainFromModelToLinkAndByRelativeTo) {
-  const Scene scene = read(in_world(
-      ball_model("a", "<pose>1 0 0 0 0 1.5707963267948966</pose>") + ball_model("b", "<pose relative_to='a'>2 0 0 0 0 0</pose>") +
-      "<model name='c'><pose>0 0 5 0 0 0</pose>"
-      "<link name='x'><pose>1 0 0 0 0 0</pose><inertial><mass>1</mass><inertia><ixx>1</ixx><iyy>1</iyy><izz>1</izz></inertia></inertial></link>"
-      "<link name='y'><pose relative_to='x'>0 1 0 0 0 0</pose><inertial><mass>1</mass><inertia><ixx>1</ixx><iyy>1</iyy><izz>1</izz></inertia></inertial></link>"
-      "</model>")).scene;
+  const Scene scene = read(in_world(ball_model("a", "<pose>1 0 0 0 0 1.5707963267948966</pose>") +
+                                    ball_model("b", "<pose relative_to='a'>2 0 0 0 0 0</pose>") +
+                                    "<model name='c'><pose>0 0 5 0 0 0</pose>"
+                                    "<link name='x'><pose>1 0 0 0 0 "
+                                    "0</pose><inertial><mass>1</mass><inertia><ixx>1</ixx><iyy>1</"
+                                    "iyy><izz>1</izz></inertia></inertial></link>"
+                                    "<link name='y'><pose relative_to='x'>0 1 0 0 0 "
+                                    "0</pose><inertial><mass>1</mass><inertia><ixx>1</ixx><iyy>1</"
+                                    "iyy><izz>1</izz></inertia></inertial></link>"
+                                    "</model>"))
+                          .scene;
   ASSERT_EQ(scene.bodies.size(), 4u);
   EXPECT_LT((scene.bodies[1].X_WL.p - Vec3(1, 2, 0)).norm(), 1e-15);
   EXPECT_EQ(scene.bodies[2].name, "c::x");
@@ -129,7 +146,8 @@ TEST(Sdf, PosesChainFromModelToLinkAndByRelativeTo) {
 TEST(Sdf, LinkTags) {
   const BodyDefinition body = read_body(beside_ball(
       "<gravity>false</gravity><velocity_decay><linear>0.5</linear><angular>0.25</angular></velocity_decay>"
-      "<tumble:linear_velocity>1 2 3</tumble:linear_velocity><tumble:angular_velocity>4 5 6</tumble:angular_velocity>"));
+      "<tumble:linear_velocity>1 2 3</tumble:linear_velocity><tumble:angular_velocity>4 5 "
+      "6</tumble:angular_velocity>"));
   EXPECT_EQ(body.name, "m");
   EXPECT_EQ(body.type, BodyType::dynamic);
   EXPECT_FALSE(body.gravity);
@@ -143,9 +161,10 @@ TEST(Sdf, LinkTags) {
 }
 
 TEST(Sdf, InertialIsTurnedIntoTheLinkFrame) {
-  const BodyDefinition body = read_body(in_link(
-      "<inertial><pose>0.1 0.2 0.3 0 0 1.5707963267948966</pose><mass>4</mass><inertia><ixx>1</ixx><iyy>2</iyy>"
-      "<izz>2.5</izz><ixy>0.125</ixy></inertia></inertial>"));
+  const BodyDefinition body =
+      read_body(in_link("<inertial><pose>0.1 0.2 0.3 0 0 "
+                        "1.5707963267948966</pose><mass>4</mass><inertia><ixx>1</ixx><iyy>2</iyy>"
+                        "<izz>2.5</izz><ixy>0.125</ixy></inertia></inertial>"));
   ASSERT_TRUE(body.inertia);
   EXPECT_EQ(body.inertia->mass, 4.0);
   EXPECT_EQ(body.inertia->center, Vec3(0.1, 0.2, 0.3));
@@ -164,7 +183,8 @@ TEST(Sdf, MassAloneScalesTheShapesInertia) {
 
 TEST(Sdf, SurfaceDensityAndColour) {
   const BodyDefinition body = read_body(in_link(
-      "<collision name='c'><pose>0 0 1 0 0 0</pose><geometry><sphere><radius>1</radius></sphere></geometry><density>250</density>"
+      "<collision name='c'><pose>0 0 1 0 0 "
+      "0</pose><geometry><sphere><radius>1</radius></sphere></geometry><density>250</density>"
       "<surface><friction><ode><mu>0.25</mu><mu2>0.25</mu2></ode></friction>"
       "<bounce><restitution_coefficient>0.75</restitution_coefficient></bounce></surface></collision>"
       "<collision name='d'><geometry><sphere><radius>1</radius></sphere></geometry></collision>"
@@ -206,12 +226,13 @@ TEST(Sdf, SpringsAndRopesJoinAnchors) {
 
 TEST(Sdf, StateReplacesPosesAndVelocities) {
   // The velocity of a state is that of the link's origin; the centre of mass is 1 m off along x, so w adds w x r.
-  const SceneReading reading = read(in_world(
-      ball_model("a") +
-      "<model name='m'><link name='l'><inertial><pose>1 0 0 0 0 0</pose><mass>1</mass><inertia><ixx>1</ixx><iyy>1</iyy><izz>1</izz>"
-      "</inertia></inertial></link></model>"
-      "<state world_name='test'><model name='m'><link name='l'><pose>0 0 7 0 0 0</pose><velocity>1 2 3 0 0 2</velocity></link>"
-      "</model></state>"));
+  const SceneReading reading =
+      read(in_world(ball_model("a") + "<model name='m'><link name='l'><inertial><pose>1 0 0 0 0 "
+                                      "0</pose><mass>1</mass><inertia><ixx>1</ixx><iyy>1</iyy><izz>1</izz>"
+                                      "</inertia></inertial></link></model>"
+                                      "<state world_name='test'><model name='m'><link name='l'><pose>0 0 7 0 "
+                                      "0 0</pose><velocity>1 2 3 0 0 2</velocity></link>"
+                                      "</model></state>"));
   EXPECT_TRUE(reading.warnings.empty());
   const BodyDefinition& body = reading.scene.bodies.at(1);
   EXPECT_EQ(body.X_WL.p, Vec3(0, 0, 7));
@@ -221,15 +242,19 @@ TEST(Sdf, StateReplacesPosesAndVelocities) {
 
 TEST(Sdf, IgnoredTagsAndAttributesAreWarningsWithTheirLine) {
   const std::vector<std::pair<std::string, std::string>> cases = {
-      {in_world("\n<light name='sun'/>"), "s.sdf:4: <light> is ignored: not in the subset of SDF that is read"},
+      {in_world("\n<light name='sun'/>"),
+       "s.sdf:4: <light> is ignored: not in the subset of SDF that is read"},
       {in_world("<physics type='ode'/>"), "s.sdf:3: <physics type> is ignored: the engine is Tumble (ode)"},
       {in_world("<physics><real_time_factor>2</real_time_factor></physics>"),
        "s.sdf:3: <real_time_factor> is ignored: the server's --rate or --fast decides (2)"},
-      {beside_ball("<self_collide>1</self_collide>"), "s.sdf:6: <self_collide> is ignored: not in the subset of SDF that is read"},
+      {beside_ball("<self_collide>1</self_collide>"),
+       "s.sdf:6: <self_collide> is ignored: not in the subset of SDF that is read"},
       {beside_ball("<pose foo='1'>0 0 0 0 0 0</pose>"),
        "s.sdf:6: <pose foo> is ignored: not in the subset of SDF that is read (1)"},
       {beside_ball("stray"), "s.sdf:4: <link> has a text that is ignored: only tags belong here (stray)"},
-      {in_link("<collision name='c'><geometry><sphere><radius>1</radius></sphere></geometry><surface><friction><ode><mu>1</mu>\n"
+      {in_link("<collision "
+               "name='c'><geometry><sphere><radius>1</radius></sphere></"
+               "geometry><surface><friction><ode><mu>1</mu>\n"
                "<mu2>0.5</mu2></ode></friction></surface></collision>"),
        "s.sdf:6: <mu2> is ignored: friction is the same in all directions, <mu> is used (0.5)"},
       {beside_ball("<visual name='c'>\n<geometry><box><size>1 1 1</size></box></geometry></visual>"),
@@ -247,20 +272,33 @@ TEST(Sdf, NoPlaceSwallowsAnUnknownTag) {
   // is either warned about or, inside a plain value, an error.
   const std::string text = in_world(
       "<gravity>0 0 -1</gravity><physics><max_step_size>0.01</max_step_size></physics>"
-      "<model name='g'><static>true</static><link name='l'><collision name='c'><geometry><plane><normal>0 0 1</normal></plane>"
+      "<model name='g'><static>true</static><link name='l'><collision name='c'><geometry><plane><normal>0 0 "
+      "1</normal></plane>"
       "</geometry></collision></link></model>"
-      "<model name='m'><pose>0 0 9 0 0 0</pose><link name='l'><pose>0 0 0 0 0 0</pose><inertial><mass>1</mass><inertia><ixx>1</ixx>"
-      "<iyy>1</iyy><izz>1</izz></inertia></inertial><collision name='c'><geometry><box><size>1 1 1</size></box></geometry>"
-      "<surface><friction><ode><mu>1</mu></ode></friction><bounce><restitution_coefficient>0</restitution_coefficient></bounce>"
-      "</surface></collision><collision name='k'><geometry><capsule><radius>1</radius><length>1</length></capsule></geometry></collision>"
-      "<collision name='h'><geometry><tumble:convex_hull><tumble:points>0 0 0 1 0 0 0 1 0 0 0 1</tumble:points></tumble:convex_hull>"
-      "</geometry></collision><collision name='o'><geometry><mesh><uri>meshes/tetrahedron.obj</uri></mesh></geometry></collision>"
-      "<velocity_decay><linear>0</linear></velocity_decay><visual name='c'><material><diffuse>1 1 1 1</diffuse></material></visual>"
-      "</link></model><population name='p'>" + ball_model("b") + "<model_count>1</model_count><box><size>1 1 1</size></box>"
-      "<distribution><type>random</type></distribution></population><population name='q'>" + ball_model("d") +
+      "<model name='m'><pose>0 0 9 0 0 0</pose><link name='l'><pose>0 0 0 0 0 "
+      "0</pose><inertial><mass>1</mass><inertia><ixx>1</ixx>"
+      "<iyy>1</iyy><izz>1</izz></inertia></inertial><collision name='c'><geometry><box><size>1 1 "
+      "1</size></box></geometry>"
+      "<surface><friction><ode><mu>1</mu></ode></friction><bounce><restitution_coefficient>0</"
+      "restitution_coefficient></bounce>"
+      "</surface></collision><collision "
+      "name='k'><geometry><capsule><radius>1</radius><length>1</length></capsule></geometry></collision>"
+      "<collision name='h'><geometry><tumble:convex_hull><tumble:points>0 0 0 1 0 0 0 1 0 0 0 "
+      "1</tumble:points></tumble:convex_hull>"
+      "</geometry></collision><collision "
+      "name='o'><geometry><mesh><uri>meshes/tetrahedron.obj</uri></mesh></geometry></collision>"
+      "<velocity_decay><linear>0</linear></velocity_decay><visual name='c'><material><diffuse>1 1 1 "
+      "1</diffuse></material></visual>"
+      "</link></model><population name='p'>" +
+      ball_model("b") +
+      "<model_count>1</model_count><box><size>1 1 1</size></box>"
+      "<distribution><type>random</type></distribution></population><population name='q'>" +
+      ball_model("d") +
       "<model_count>1</model_count><cylinder><radius>1</radius><length>1</length></cylinder>"
-      "<distribution><type>uniform</type></distribution></population><state world_name='test'><model name='m'><link name='l'>"
-      "<velocity>0 0 0 0 0 0</velocity></link></model></state><tumble:rope name='r'><tumble:a>0 0 1</tumble:a>"
+      "<distribution><type>uniform</type></distribution></population><state world_name='test'><model "
+      "name='m'><link name='l'>"
+      "<velocity>0 0 0 0 0 0</velocity></link></model></state><tumble:rope name='r'><tumble:a>0 0 "
+      "1</tumble:a>"
       "<tumble:b body='m'>0 0 0</tumble:b></tumble:rope>");
   ASSERT_TRUE(read(text).warnings.empty()) << read(text).warnings[0];
   int places = 0;

@@ -155,6 +155,17 @@ TEST(SdfError, Inertia) {
   EXPECT_EQ(indefinite.find("s.sdf:6: <inertia>: "), 0u) << indefinite;
 }
 
+TEST(SdfError, ComputedInertiasAreCheckedToo) {
+  // The mass overflows, whether the inertia is the collision's own or scaled.
+  const std::string huge =
+      "<collision "
+      "name='c'><geometry><sphere><radius>1e100</radius></sphere></geometry><density>1e300</density></"
+      "collision>";
+  EXPECT_EQ(error_of(in_link(huge)).find("s.sdf:4: <link>: "), 0u) << error_of(in_link(huge));
+  const std::string scaled = in_link(huge + "\n<inertial><mass>1</mass></inertial>");
+  EXPECT_EQ(error_of(scaled).find("s.sdf:6: <inertial>: "), 0u) << error_of(scaled);
+}
+
 TEST(SdfError, NamesAndReferences) {
   check(
       {{in_world(ball_model("a") + "\n" + ball_model("a")), "s.sdf:4: <model name>: is used twice (a)"},

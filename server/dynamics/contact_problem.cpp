@@ -30,13 +30,6 @@ double bound_of(double gap, double h, const BoundSettings& settings) {
   return std::min(settings.push_speed, settings.push_fraction * std::max(0.0, -gap - settings.slop) / h);
 }
 
-void apply_impulse(SolverBody& A, SolverBody& B, const Vec3& rA, const Vec3& rB, const Vec3& impulse) {
-  A.v -= A.inv_mass * impulse;
-  A.w -= A.inv_I_W * rA.cross(impulse);
-  B.v += B.inv_mass * impulse;
-  B.w += B.inv_I_W * rB.cross(impulse);
-}
-
 double contact_residual(const ContactProblem& problem, const PointContact& c) {
   if (c.mass_n == 0.0) return 0.0;  // neither body can be moved
   const Vec3 u = relative_velocity(problem.bodies[c.a], problem.bodies[c.b], c.rA, c.rB);
@@ -92,6 +85,13 @@ void prepare(ContactProblem& problem, const BoundSettings& settings) {
                      inverse_mass_along(problem.bodies[row.b], row.rB, row.n, row.n);
     row.mass = k > 0.0 ? 1.0 / k : 0.0;
   }
+}
+
+void apply_impulse(SolverBody& A, SolverBody& B, const Vec3& rA, const Vec3& rB, const Vec3& impulse) {
+  A.v -= A.inv_mass * impulse;
+  A.w -= A.inv_I_W * rA.cross(impulse);
+  B.v += B.inv_mass * impulse;
+  B.w += B.inv_I_W * rB.cross(impulse);
 }
 
 void apply_stored_impulses(ContactProblem& problem) {

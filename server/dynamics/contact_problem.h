@@ -91,6 +91,9 @@ struct BoundSettings {
 };
 void prepare(ContactProblem& problem, const BoundSettings& settings);
 
+/// `impulse` [N s] on B at rB, its opposite on A at rA.
+void apply_impulse(SolverBody& A, SolverBody& B, const Vec3& rA, const Vec3& rB, const Vec3& impulse);
+
 /// v, w += M^-1 J^T lambda of every contact and row.
 void apply_stored_impulses(ContactProblem& problem);
 

@@ -12,9 +12,10 @@ struct Rival {
   SolveFunction solve;
 };
 
-constexpr std::array<Rival, 3> kRivals{{
+constexpr std::array<Rival, 4> kRivals{{
     {Solver::course_impulse, "course_impulse", &solve_course_impulse},
     {Solver::pgs, "pgs", &solve_pgs},
+    {Solver::nncg, "nncg", &solve_nncg},
     {Solver::soft_step, "soft_step", &solve_soft_step},
 }};
 

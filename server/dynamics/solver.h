@@ -11,12 +11,13 @@ namespace tumble {
 enum class Solver {
   course_impulse,  ///< The slides: one contact at a time, fraction f of the unit impulse, positional correction.
   pgs,             ///< Warm-started projected Gauss-Seidel, friction disc, sweeps until the residual is small.
+  nncg,            ///< The same sweeps, accelerated by conjugate gradients.
   soft_step,       ///< Sub-steps with soft contacts and a relax pass (TGS-soft).
 };
 
 struct SolverSettings {
-  int max_sweeps = 30;         ///< pgs: upper limit of sweeps; course_impulse: passes over the contacts.
-  double tolerance = 1e-8;     ///< [m/s] residual at which pgs stops.
+  int max_sweeps = 30;         ///< pgs, nncg: upper limit of sweeps; course_impulse: passes over the contacts.
+  double tolerance = 1e-8;     ///< [m/s] residual at which pgs and nncg stop, and accept a warm start unsolved.
   int sub_steps = 4;           ///< soft_step.
   Vec3 gravity = Vec3::Zero();  ///< [m/s^2]; course_impulse tells microcollisions by it.
 };
@@ -31,6 +32,7 @@ struct SolverReport {
 /// Momentum of the island is conserved to round-off.
 SolverReport solve_course_impulse(ContactProblem& problem, const SolverSettings& settings);
 SolverReport solve_pgs(ContactProblem& problem, const SolverSettings& settings);
+SolverReport solve_nncg(ContactProblem& problem, const SolverSettings& settings);
 SolverReport solve_soft_step(ContactProblem& problem, const SolverSettings& settings);
 
 using SolveFunction = SolverReport (*)(ContactProblem&, const SolverSettings&);

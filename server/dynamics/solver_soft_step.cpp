@@ -41,7 +41,7 @@ class SoftStep {
 
  private:
   struct BodyPath {
-    Twist kick;                        // one sub-step of forces
+    SweptBody kick;                    // one sub-step of forces
     Vec3 moved = Vec3::Zero();         // since the start of the step
     Vec3 turned = Vec3::Zero();        // sum of h w
     Quat rotation = Quat::Identity();  // product of the turns
@@ -74,7 +74,7 @@ class SoftStep {
   std::vector<BodyPath> bodies_;
   std::vector<ContactPath> contacts_;
   std::vector<RowPath> rows_;
-  std::vector<Twist> start_;  // of the sub-step
+  std::vector<SweptBody> start_;  // of the sub-step
 };
 
 bool only_springs(const ContactProblem& problem) {
@@ -93,8 +93,8 @@ SoftStep::SoftStep(ContactProblem& problem, int sub_steps)
   const double share = 1.0 / sub_steps;
   for (std::size_t i = 0; i < problem.bodies.size(); ++i) {
     const SolverBody& body = problem.bodies[i];
-    bodies_.push_back({{share * (body.v - body.v0), share * (body.w - body.w0)}});
-    sweep_.twists[i] = {body.v0, body.w0};
+    bodies_.push_back({{Lanes(share * (body.v - body.v0)), Lanes(share * (body.w - body.w0))}});
+    sweep_.bodies[i] = {Lanes(body.v0), Lanes(body.w0)};
   }
   for (const PointContact& c : problem.contacts) {
     if (c.mass_n > 0.0) contacts_.push_back({c.separation - c.n.dot(c.rB - c.rA), c.rA, c.rB});
@@ -108,19 +108,17 @@ SoftStep::SoftStep(ContactProblem& problem, int sub_steps)
 }
 
 void SoftStep::kick_and_warm_start() {
-  start_ = sweep_.twists;
+  start_ = sweep_.bodies;
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
-    sweep_.twists[i].v += bodies_[i].kick.v;
-    sweep_.twists[i].w += bodies_[i].kick.w;
+    sweep_.bodies[i].v.e += bodies_[i].kick.v.e;
+    sweep_.bodies[i].w.e += bodies_[i].kick.w.e;
   }
   for (const SweptRow& row : sweep_.rows) {
-    row.n.apply(row.l, row.inv_mass_A, row.inv_mass_B, sweep_.twists[row.a], sweep_.twists[row.b]);
+    row.n.apply(row.l, row.inv_mass_A, row.inv_mass_B, sweep_.bodies[row.a], sweep_.bodies[row.b]);
   }
   for (const SweptContact& c : sweep_.contacts) {
-    Twist &A = sweep_.twists[c.a], &B = sweep_.twists[c.b];
-    c.n.apply(c.l_n, c.inv_mass_A, c.inv_mass_B, A, B);
-    c.t1.apply(c.l_1, c.inv_mass_A, c.inv_mass_B, A, B);
-    c.t2.apply(c.l_2, c.inv_mass_A, c.inv_mass_B, A, B);
+    SweptBody &A = sweep_.bodies[c.a], &B = sweep_.bodies[c.b];
+    apply(c, c.l_n, c.l_1, c.l_2, A, B);
   }
 }
 
@@ -145,11 +143,11 @@ void SoftStep::soften_rows() {
 
 double SoftStep::gap(const SweptContact& c, const ContactPath& path) const {
   const BodyPath &A = bodies_[c.a], &B = bodies_[c.b];
-  return c.n.d.dot(B.moved + B.rotation * path.rB - A.moved - A.rotation * path.rA) + path.base;
+  return c.n.d.vec3().dot(B.moved + B.rotation * path.rB - A.moved - A.rotation * path.rA) + path.base;
 }
 
 void SoftStep::sweep(bool push) {
-  for (SweptRow& row : sweep_.rows) visit_row(row, sweep_.twists[row.a], sweep_.twists[row.b]);
+  for (SweptRow& row : sweep_.rows) visit_row(row, sweep_.bodies[row.a], sweep_.bodies[row.b]);
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
     SweptContact& c = sweep_.contacts[i];
     const double s = gap(c, contacts_[i]);
@@ -161,9 +159,8 @@ void SoftStep::sweep(bool push) {
       const Softness& soft = fixed ? soft_.against_fixed : soft_.between;
       rule = {.push = std::max(soft.scale * soft.rate * s, -kPushSpeed), .scale = soft.scale, .give = soft.give};
     }
-    Twist &A = sweep_.twists[c.a], &B = sweep_.twists[c.b];
-    visit_normal(c, rule, A, B);
-    visit_friction(c, A, B);
+    SweptBody &A = sweep_.bodies[c.a], &B = sweep_.bodies[c.b];
+    visit_contact(c, rule, A, B);
   }
 }
 
@@ -171,8 +168,8 @@ void SoftStep::move() {
   const double before = drift_ == ContactProblem::Drift::average ? 0.5 : 0.0, after = 1.0 - before;
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     BodyPath& path = bodies_[i];
-    path.moved += h_ * (before * start_[i].v + after * sweep_.twists[i].v);
-    const Vec3 turn = h_ * (before * start_[i].w + after * sweep_.twists[i].w);
+    path.moved += h_ * (before * start_[i].v.vec3() + after * sweep_.bodies[i].v.vec3());
+    const Vec3 turn = h_ * (before * start_[i].w.vec3() + after * sweep_.bodies[i].w.vec3());
     path.turned += turn;
     const Quat half(0.0, 0.5 * turn.x(), 0.5 * turn.y(), 0.5 * turn.z());
     const Quat change = half * path.rotation;
@@ -181,7 +178,7 @@ void SoftStep::move() {
   for (std::size_t i = 0; i < rows_.size(); ++i) {
     const SweptRow& row = sweep_.rows[i];
     rows_[i].moved += h_ * (before * row.n.velocity(start_[row.a], start_[row.b]) +
-                            after * row.n.velocity(sweep_.twists[row.a], sweep_.twists[row.b]));
+                            after * row.n.velocity(sweep_.bodies[row.a], sweep_.bodies[row.b]));
   }
 }
 
@@ -194,15 +191,17 @@ void SoftStep::add_impulses() {
   for (std::size_t i = 0; i < rows_.size(); ++i) rows_[i].l += sweep_.rows[i].l;
 }
 
+/// The problem's velocities are still v* with nothing applied; so are its impulses made here.
 void SoftStep::store() {
+  for (ScalarRow& row : problem_.rows) row.lambda = 0.0;
+  for (PointContact& c : problem_.contacts) c.lambda.setZero();
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
     sweep_.contacts[i].l_n = contacts_[i].l_n;
     sweep_.contacts[i].l_1 = contacts_[i].l_1;
     sweep_.contacts[i].l_2 = contacts_[i].l_2;
   }
   for (std::size_t i = 0; i < rows_.size(); ++i) sweep_.rows[i].l = rows_[i].l;
-  store_impulses(sweep_, problem_);
-  apply_stored_impulses(problem_);
+  update_impulses(sweep_, problem_);
   const double before = drift_ == ContactProblem::Drift::average ? 0.5 : 0.0, after = 1.0 - before;
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     SolverBody& body = problem_.bodies[i];

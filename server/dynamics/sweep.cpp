@@ -5,10 +5,13 @@ namespace tumble {
 namespace {
 
 SweptDirection make_direction(const SolverBody& A, const SolverBody& B, const Vec3& d, const Vec3& rA, const Vec3& rB) {
-  SweptDirection s{d, rA.cross(d), rB.cross(d), Vec3::Zero(), Vec3::Zero()};
-  s.gA = A.inv_I_W * s.jA;
-  s.gB = B.inv_I_W * s.jB;
-  return s;
+  const Vec3 jA = rA.cross(d), jB = rB.cross(d);
+  return {Lanes(d), Lanes(jA), Lanes(jB), Lanes(A.inv_I_W * jA), Lanes(B.inv_I_W * jB)};
+}
+
+/// Angular part of the velocity along `d` for a unit impulse along `impulse` [1/kg].
+double answer(const SweptDirection& d, const SweptDirection& impulse) {
+  return d.jA.vec3().dot(impulse.gA.vec3()) + d.jB.vec3().dot(impulse.gB.vec3());
 }
 
 SweptContact make_contact(const ContactProblem& problem, const PointContact& c) {
@@ -29,9 +32,11 @@ SweptContact make_contact(const ContactProblem& problem, const PointContact& c) 
   s.l_1 = c.lambda.y();
   s.l_2 = c.lambda.z();
   const double inv_mass = A.inv_mass + B.inv_mass;
-  const double k11 = inv_mass + s.t1.jA.dot(s.t1.gA) + s.t1.jB.dot(s.t1.gB);
-  const double k22 = inv_mass + s.t2.jA.dot(s.t2.gA) + s.t2.jB.dot(s.t2.gB);
-  const double k12 = s.t1.jA.dot(s.t2.gA) + s.t1.jB.dot(s.t2.gB);
+  const double k11 = inv_mass + answer(s.t1, s.t1), k22 = inv_mass + answer(s.t2, s.t2), k12 = answer(s.t1, s.t2);
+  s.k_n = 1.0 / c.mass_n;
+  s.k_t = 1.0 / c.mass_t;
+  s.k_1n = answer(s.t1, s.n);
+  s.k_2n = answer(s.t2, s.n);
   const double det = k11 * k22 - k12 * k12;
   s.i11 = k22 / det;
   s.i12 = -k12 / det;
@@ -43,8 +48,8 @@ SweptContact make_contact(const ContactProblem& problem, const PointContact& c) 
 
 Sweep make_sweep(const ContactProblem& problem) {
   Sweep sweep;
-  sweep.twists.reserve(problem.bodies.size());
-  for (const SolverBody& body : problem.bodies) sweep.twists.push_back({body.v, body.w});
+  sweep.bodies.reserve(problem.bodies.size());
+  for (const SolverBody& body : problem.bodies) sweep.bodies.push_back({Lanes(body.v), Lanes(body.w)});
   sweep.contacts.reserve(problem.contacts.size());
   for (const PointContact& c : problem.contacts) {
     // A contact between two bodies that cannot be moved has no mass and nothing to solve.
@@ -60,17 +65,41 @@ Sweep make_sweep(const ContactProblem& problem) {
   return sweep;
 }
 
-void store_impulses(const Sweep& sweep, ContactProblem& problem) {
+void update_impulses(const Sweep& sweep, ContactProblem& problem) {
+  auto row = sweep.rows.begin();
+  for (ScalarRow& to : problem.rows) {
+    if (to.mass == 0.0) continue;
+    apply_impulse(problem.bodies[to.a], problem.bodies[to.b], to.rA, to.rB, (row->l - to.lambda) * to.n);
+    to.lambda = (row++)->l;
+  }
   auto contact = sweep.contacts.begin();
-  for (PointContact& c : problem.contacts) {
-    if (c.mass_n == 0.0) continue;
-    c.lambda = Vec3(contact->l_n, contact->l_1, contact->l_2);
+  for (PointContact& to : problem.contacts) {
+    if (to.mass_n == 0.0) continue;
+    const Vec3 l(contact->l_n, contact->l_1, contact->l_2), change = l - to.lambda;
+    apply_impulse(problem.bodies[to.a], problem.bodies[to.b], to.rA, to.rB,
+                  change.x() * to.n + change.y() * to.t1 + change.z() * to.t2);
+    to.lambda = l;
     ++contact;
   }
-  auto swept = sweep.rows.begin();
-  for (ScalarRow& row : problem.rows) {
-    if (row.mass > 0.0) row.lambda = (swept++)->l;
+}
+
+double sweep_once(Sweep& sweep, SweepOrder order) {
+  double largest = 0.0;
+  const auto contact = [&](SweptContact& c) {
+    SweptBody &A = sweep.bodies[c.a], &B = sweep.bodies[c.b];
+    largest = std::max(largest, visit_contact(c, {.push = -c.bound}, A, B));
+  };
+  const auto row = [&](SweptRow& r) {
+    largest = std::max(largest, visit_row(r, sweep.bodies[r.a], sweep.bodies[r.b]));
+  };
+  if (order == SweepOrder::forward) {
+    std::for_each(sweep.rows.begin(), sweep.rows.end(), row);
+    std::for_each(sweep.contacts.begin(), sweep.contacts.end(), contact);
+  } else {
+    std::for_each(sweep.contacts.rbegin(), sweep.contacts.rend(), contact);
+    std::for_each(sweep.rows.rbegin(), sweep.rows.rend(), row);
   }
+  return std::sqrt(largest);
 }
 
 }  // namespace tumble

@@ -11,23 +11,35 @@
 
 namespace tumble {
 
-struct Twist {
-  Vec3 v, w;
+/// A vector in four lanes, the last 0: one register holds it, and element-wise operations give the same bits whatever
+/// instruction set they are translated to.
+struct Lanes {
+  typedef double Four __attribute__((vector_size(32)));
+  Four e = {0.0, 0.0, 0.0, 0.0};
+
+  Lanes() = default;
+  explicit Lanes(const Vec3& v) : e{v.x(), v.y(), v.z(), 0.0} {}
+  Vec3 vec3() const { return {e[0], e[1], e[2]}; }
+};
+
+struct SweptBody {
+  Lanes v, w;
 };
 
 /// A direction d at a point: u = d . (vB - vA) + jB . wB - jA . wA, and the answer of both bodies to an impulse.
 struct SweptDirection {
-  Vec3 d, jA, jB;  ///< d; rA x d, rB x d
-  Vec3 gA, gB;     ///< I_A^-1 jA, I_B^-1 jB
+  Lanes d, jA, jB;  ///< d; rA x d, rB x d
+  Lanes gA, gB;     ///< I_A^-1 jA, I_B^-1 jB
 
-  double velocity(const Twist& A, const Twist& B) const {
-    return d.dot(B.v - A.v) + jB.dot(B.w) - jA.dot(A.w);
+  double velocity(const SweptBody& A, const SweptBody& B) const {
+    const Lanes::Four u = d.e * (B.v.e - A.v.e) + (jB.e * B.w.e - jA.e * A.w.e);
+    return (u[0] + u[1]) + (u[2] + u[3]);
   }
-  void apply(double l, double inv_mass_A, double inv_mass_B, Twist& A, Twist& B) const {
-    A.v -= (l * inv_mass_A) * d;
-    A.w -= l * gA;
-    B.v += (l * inv_mass_B) * d;
-    B.w += l * gB;
+  void apply(double l, double inv_mass_A, double inv_mass_B, SweptBody& A, SweptBody& B) const {
+    A.v.e -= (l * inv_mass_A) * d.e;
+    A.w.e -= l * gA.e;
+    B.v.e += (l * inv_mass_B) * d.e;
+    B.w.e += l * gB.e;
   }
 };
 
@@ -38,6 +50,8 @@ struct SweptContact {
   double mass_n, mass_t, friction;
   double bound;
   double l_n, l_1, l_2;
+  double k_n, k_t;       ///< 1/mass_n, 1/mass_t [1/kg]
+  double k_1n, k_2n;     ///< Velocity along t1, t2 for a unit normal impulse [1/kg].
   double i11, i12, i22;  ///< Inverse of K_tt [kg].
 };
 
@@ -50,14 +64,21 @@ struct SweptRow {
 };
 
 struct Sweep {
-  std::vector<Twist> twists;
+  std::vector<SweptBody> bodies;
   std::vector<SweptContact> contacts;
   std::vector<SweptRow> rows;
 };
 
-/// Copies velocities and impulses in; and the impulses, not the velocities, back.
+/// Copies velocities and impulses in.
 Sweep make_sweep(const ContactProblem& problem);
-void store_impulses(const Sweep& sweep, ContactProblem& problem);
+
+/// Brings the impulses back, not the velocities: the bodies get M^-1 J^T (change of the stored impulses), so rounding does
+/// not collect over the sweeps and a residual computed then speaks of exactly what is returned.
+void update_impulses(const Sweep& sweep, ContactProblem& problem);
+
+/// Rigid conditions, rows then contacts in their order, or all of it backwards; returns the largest correction [m/s].
+enum class SweepOrder { forward, backward };
+double sweep_once(Sweep& sweep, SweepOrder order);
 
 /// How the normal condition is softened: l <- max(0, l - m (scale u + push) - give l).
 struct NormalRule {
@@ -66,49 +87,58 @@ struct NormalRule {
   double give = 0.0;
 };
 
-/// Returns the correction |change| / mass [m/s].
-inline double visit_normal(SweptContact& c, const NormalRule& rule, Twist& A, Twist& B) {
-  const double u = c.n.velocity(A, B);
-  const double l = std::max(0.0, c.l_n - c.mass_n * (rule.scale * u + rule.push) - rule.give * c.l_n);
-  const double change = l - c.l_n;
-  c.l_n = l;
-  c.n.apply(change, c.inv_mass_A, c.inv_mass_B, A, B);
-  return std::abs(change) / c.mass_n;
+/// `impulse` along each direction at once.
+inline void apply(const SweptContact& c, double l_n, double l_1, double l_2, SweptBody& A, SweptBody& B) {
+  const Lanes::Four p = l_n * c.n.d.e + l_1 * c.t1.d.e + l_2 * c.t2.d.e;
+  A.v.e -= c.inv_mass_A * p;
+  A.w.e -= l_n * c.n.gA.e + l_1 * c.t1.gA.e + l_2 * c.t2.gA.e;
+  B.v.e += c.inv_mass_B * p;
+  B.w.e += l_n * c.n.gB.e + l_1 * c.t1.gB.e + l_2 * c.t2.gB.e;
 }
 
-/// The friction disc of radius mu l_n. Inside it the 2 x 2 block is solved at once; else a step of 1/lambda_max(K_tt)
-/// and the nearest point of the disc. Both have exactly the Coulomb solutions as fixed points: the plain inverse followed
-/// by a projection would turn the friction away from the sliding direction where K_tt is not isotropic.
-inline double visit_friction(SweptContact& c, Twist& A, Twist& B) {
-  const double u1 = c.t1.velocity(A, B), u2 = c.t2.velocity(A, B);
-  const double radius = c.friction * c.l_n;
+/// Normal condition, then the friction disc of radius mu l_n. Inside the disc the 2 x 2 block is solved at once; else a
+/// step of 1/lambda_max(K_tt) and the nearest point of the disc. Both have exactly the Coulomb solutions as fixed points:
+/// the plain inverse followed by a projection would turn the friction away from the sliding direction where K_tt is not
+/// isotropic. The bodies are read and written once: a sweep waits for its own last result, not for arithmetic.
+/// Returns the square of the larger correction [m^2/s^2].
+inline double visit_contact(SweptContact& c, const NormalRule& rule, SweptBody& A, SweptBody& B) {
+  const double u_n = c.n.velocity(A, B);
+  double u1 = c.t1.velocity(A, B), u2 = c.t2.velocity(A, B);
+  const double l_n = std::max(0.0, c.l_n - c.mass_n * (rule.scale * u_n + rule.push) - rule.give * c.l_n);
+  const double change_n = l_n - c.l_n;
+  u1 += c.k_1n * change_n;
+  u2 += c.k_2n * change_n;
+  const double radius = c.friction * l_n;
   double l1 = c.l_1 - (c.i11 * u1 + c.i12 * u2), l2 = c.l_2 - (c.i12 * u1 + c.i22 * u2);
   if (l1 * l1 + l2 * l2 > radius * radius) {
     l1 = c.l_1 - c.mass_t * u1;
     l2 = c.l_2 - c.mass_t * u2;
-    const double length2 = l1 * l1 + l2 * l2;
-    if (length2 > radius * radius) {
-      const double shrink = radius / std::sqrt(length2);
+    const double square = l1 * l1 + l2 * l2;
+    if (square > radius * radius) {
+      const double shrink = radius / std::sqrt(square);
       l1 *= shrink;
       l2 *= shrink;
     }
   }
   const double change1 = l1 - c.l_1, change2 = l2 - c.l_2;
+  c.l_n = l_n;
   c.l_1 = l1;
   c.l_2 = l2;
-  c.t1.apply(change1, c.inv_mass_A, c.inv_mass_B, A, B);
-  c.t2.apply(change2, c.inv_mass_A, c.inv_mass_B, A, B);
-  return std::sqrt(change1 * change1 + change2 * change2) / c.mass_t;
+  apply(c, change_n, change1, change2, A, B);
+  const double r_n = c.k_n * change_n;
+  return std::max(r_n * r_n, c.k_t * c.k_t * (change1 * change1 + change2 * change2));
 }
 
-inline double visit_row(SweptRow& row, Twist& A, Twist& B) {
+/// Returns the square of the correction [m^2/s^2].
+inline double visit_row(SweptRow& row, SweptBody& A, SweptBody& B) {
   const double u = row.n.velocity(A, B);
   const double change =
       row.soft ? -(row.l + row.softness * (u + row.bias)) * (row.mass / (row.mass + row.softness))
                : std::max(row.lower, row.l - row.mass * (u - row.bound)) - row.l;
   row.l += change;
   row.n.apply(change, row.inv_mass_A, row.inv_mass_B, A, B);
-  return std::abs(change) / row.mass;
+  const double r = change / row.mass;
+  return r * r;
 }
 
 }  // namespace tumble

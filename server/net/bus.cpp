@@ -22,7 +22,7 @@ std::string check_bus(const BusAddress& address) {
   if (report.works()) return report.interface;
   std::string text = "the LCM bus at " + describe(address) + " can't be used: " + report.what;
   if (!report.interface.empty()) text += "\n  interface: " + report.interface;
-  throw BusError(text + "\n  repair it with:  " + report.repair);
+  throw BusError(text + "\nrepair it with\n  " + report.repair);
 }
 
 }  // namespace

@@ -52,7 +52,7 @@ void CommandInbox::admit(const Message& message) {
       return answer(client, sequence, {.status = Status::too_old, .detail = status_text(Status::too_old)});
     case ClientHistory::Novelty::repeated:
       ++counters_.repeated;
-      return answer(client, sequence, *history_.find(client, sequence));
+      return answer_again(client, sequence);
     case ClientHistory::Novelty::fresh: break;
   }
   const std::int64_t start = std::max(message.start_step, step_);
@@ -65,7 +65,7 @@ void CommandInbox::admit(const Message& message) {
     outcome = {.status = Status::queue_full, .detail = fmt::format("{} commands wait", pending_.size())};
   }
   if (outcome.status != Status::applied) return settle(client, sequence, std::move(outcome));
-  pending_.emplace(Key{start, client, sequence}, Command{client, sequence, message.expiry_step, message});
+  pending_.emplace(Key{start, client, sequence}, Command{client, sequence, message.session, message.expiry_step, message});
   Outcome& noted = *history_.find(client, sequence);
   noted.step = start;
   if (start > step_) answer(client, sequence, noted);
@@ -109,10 +109,24 @@ void CommandInbox::cancel_pending() {
   }
 }
 
+void CommandInbox::answer_again(std::int64_t client, std::int64_t sequence) {
+  const Outcome& noted = *history_.find(client, sequence);
+  if (noted.status == Status::queued && noted.step <= step_) {
+    unanswered_.emplace_back(client, sequence);  // it is decided in this very tick
+  } else {
+    answer(client, sequence, noted);
+  }
+}
+
 void CommandInbox::answer(std::int64_t client, std::int64_t sequence, const Outcome& outcome) {
   answers_.push_back({client, sequence, outcome});
 }
 
-std::vector<Acknowledgement> CommandInbox::take_answers() { return std::exchange(answers_, {}); }
+std::vector<Acknowledgement> CommandInbox::take_answers() {
+  for (const auto& [client, sequence] : std::exchange(unanswered_, {})) {
+    if (const Outcome* noted = history_.find(client, sequence)) answer(client, sequence, *noted);
+  }
+  return std::exchange(answers_, {});
+}
 
 }  // namespace tumble

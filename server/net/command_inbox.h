@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <map>
 #include <tuple>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -19,6 +20,7 @@ namespace tumble {
 /// A command whose form, session and ranges are good; whether its body exists is for the world to say.
 struct Command {
   std::int64_t client = 0, sequence = 0;
+  std::int64_t session = 0;      ///< 0: any
   std::int64_t expiry_step = 0;  ///< 0: never
   std::variant<force_command_t, control_t> content;
 };
@@ -46,7 +48,7 @@ class CommandInbox {
   /// Answers every waiting command with `cancelled`: the world was reset.
   void cancel_pending();
 
-  /// The answers since the last call, in the order they were decided.
+  /// The answers since the last call, one for every copy received; call it when what was due is settled.
   std::vector<Acknowledgement> take_answers();
   const InboxCounters& counters() const { return counters_; }
   std::size_t pending() const { return pending_.size(); }
@@ -59,12 +61,14 @@ class CommandInbox {
   template <typename Message>
   void admit(const Message& message);
   void answer(std::int64_t client, std::int64_t sequence, const Outcome& outcome);
+  void answer_again(std::int64_t client, std::int64_t sequence);
   void settle(std::int64_t client, std::int64_t sequence, Outcome outcome);
 
   std::int64_t session_ = 0, step_ = 0;
   ClientHistory history_;
   std::map<Key, Command> pending_;
   std::vector<Acknowledgement> answers_;
+  std::vector<std::pair<std::int64_t, std::int64_t>> unanswered_;  // copies of commands that are due now
   InboxCounters counters_;
 };
 

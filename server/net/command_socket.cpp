@@ -10,6 +10,7 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <optional>
 #include <system_error>
 
 #include "protocol/bus_probe.h"
@@ -17,10 +18,10 @@
 namespace tumble {
 namespace {
 
-constexpr std::uint32_t kUdpHeader = 8, kLcmHeader = 8;
+constexpr std::uint32_t kUdpHeader = 8, kLcmHeader = 8, kFragmentHeader = 20;
 constexpr std::size_t kMaxChannel = 63;
-constexpr std::size_t kMaxDatagram = kLcmHeader + kMaxChannel + 1 + kMaxCommandBytes;
-constexpr std::size_t kSlot = kMaxDatagram + 1;  // the byte too many tells the codec that it is too long
+/// The longest datagram that is kept whole, and one byte more that tells the codec of a message that is too long.
+constexpr std::size_t kSlot = kFragmentHeader + kMaxChannel + 1 + kMaxCommandBytes + 1;
 constexpr int kBatch = 32;  // datagrams a system call
 /// Room for 10 000 commands a second over a pause of 100 ms at the kernel's 1 kB for a small datagram.
 constexpr int kReceiveBuffer = 1 << 20;
@@ -32,26 +33,42 @@ bool set_option(int socket, int level, int name, const Value& value) {
   return ::setsockopt(socket, level, name, &value, sizeof value) == 0;
 }
 
-/// Classic packet filter over the UDP datagram: not LCM's short form -> drop; channel equal to `ignored` -> drop; else
-/// keep, cut to one byte more than a command may have. A datagram shorter than the compared name is dropped by the
-/// first load beyond its end; no command is that short.
+void add(std::vector<sock_filter>& program, sock_filter instruction) { program.push_back(instruction); }
+
+/// Appends "if the load `load` at byte `at` of the LCM message is `value`, go on, else skip `skip` instructions".
+void add_test(std::vector<sock_filter>& program, int load, std::size_t at, std::uint32_t value, std::size_t skip) {
+  const auto code = static_cast<std::uint16_t>(BPF_LD | BPF_ABS | load);
+  add(program, BPF_STMT(code, static_cast<std::uint32_t>(kUdpHeader + at)));
+  add(program, BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, value, 0, static_cast<std::uint8_t>(skip)));
+}
+
+/// Classic packet filter over the UDP datagram. Kept, cut to kSlot bytes: short messages but for those on `ignored`,
+/// and first fragments, which are only counted. A datagram that ends before a byte that is tested is dropped.
 std::vector<sock_filter> make_filter(const std::string& ignored) {
-  constexpr std::uint32_t kShortForm = 0x4c433032;  // "LC02"
-  const std::size_t length = ignored.size() + 1;    // with the closing zero
-  const auto to_drop = static_cast<std::uint8_t>(2 * length);
-  std::vector<sock_filter> program = {
-      BPF_STMT(BPF_LD | BPF_W | BPF_ABS, kUdpHeader),
-      BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, kShortForm, 0, to_drop),
-  };
+  constexpr std::uint32_t kShort = 0x4c433032, kFragment = 0x4c433033;  // "LC02", "LC03"
+  const std::size_t length = ignored.size() + 1;                        // with the closing zero
+  std::vector<sock_filter> program;
+  add_test(program, BPF_W, 0, kShort, 2 * length + 1);
   for (std::size_t i = 0; i < length; ++i) {
-    const auto at = static_cast<std::uint32_t>(kUdpHeader + kLcmHeader + i);
-    const auto to_keep = static_cast<std::uint8_t>(2 * (length - 1 - i) + 1);
-    program.push_back(BPF_STMT(BPF_LD | BPF_B | BPF_ABS, at));
-    program.push_back(BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, static_cast<std::uint8_t>(ignored.c_str()[i]), 0, to_keep));
+    const auto byte = static_cast<std::uint8_t>(ignored.c_str()[i]);
+    add_test(program, BPF_B, kLcmHeader + i, byte, 2 * (length - 1 - i) + 1 + 4);
   }
-  program.push_back(BPF_STMT(BPF_RET | BPF_K, 0));
-  program.push_back(BPF_STMT(BPF_RET | BPF_K, static_cast<std::uint32_t>(kUdpHeader + kSlot)));
+  add(program, BPF_STMT(BPF_RET | BPF_K, 0));
+  add_test(program, BPF_W, 0, kFragment, 3);
+  add_test(program, BPF_H, 16, 0, 1);
+  add(program, BPF_STMT(BPF_RET | BPF_K, static_cast<std::uint32_t>(kUdpHeader + kSlot)));
+  add(program, BPF_STMT(BPF_RET | BPF_K, 0));
   return program;
+}
+
+/// Channel and payload, or as much as was kept of it, of a short message or a first fragment.
+std::optional<ShortMessage> parse_message(std::string_view bytes) {
+  if (!bytes.starts_with("LC03")) return parse_short_message(bytes);
+  if (bytes.size() < kFragmentHeader) return std::nullopt;
+  bytes.remove_prefix(kFragmentHeader);
+  const auto end = bytes.find('\0');
+  if (end == std::string_view::npos) return std::nullopt;
+  return ShortMessage{bytes.substr(0, end), bytes.substr(end + 1)};
 }
 
 void join(int socket, const BusAddress& address) {
@@ -116,7 +133,7 @@ int CommandSocket::receive(int budget, const Handler& handler) {
         kernel_drops_ = drops;
       }
       const std::string_view bytes(reinterpret_cast<const char*>(slices[i].iov_base), headers[i].msg_len);
-      if (const auto message = parse_short_message(bytes)) {
+      if (const auto message = parse_message(bytes)) {
         handler(message->channel, {reinterpret_cast<const std::uint8_t*>(message->payload.data()),
                                    message->payload.size()});
       }

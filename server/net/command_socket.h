@@ -1,6 +1,7 @@
 // Commands from the multicast group, read by ourselves instead of by liblcm: its reassembly of fragmented messages can
 // be crashed by two crafted datagrams, and it costs seven times more per message. Only LCM's short form (one datagram
-// a message) is accepted; every command fits. The kernel drops what can't be a command before it takes up buffer.
+// a message) can be a command; of a fragmented message the first fragment is handed on, so that it is counted as too
+// long. The kernel drops the rest before it takes up buffer.
 #pragma once
 
 #include <cstdint>

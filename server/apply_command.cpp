@@ -10,9 +10,13 @@
 namespace tumble {
 namespace {
 
-Vec3 to_vector(const double (&values)[3]) { return {values[0], values[1], values[2]}; }
+Vec3 to_vector(const double (&values)[3]) {
+  return {values[0], values[1], values[2]};
+}
 
-Quat to_quaternion(const double (&q)[4]) { return normalized(Quat(q[0], q[1], q[2], q[3])); }
+Quat to_quaternion(const double (&q)[4]) {
+  return normalized(Quat(q[0], q[1], q[2], q[3]));
+}
 
 BodyId to_id(const Outcome& found) {
   return {static_cast<std::uint32_t>(found.body), static_cast<std::uint32_t>(found.generation)};
@@ -37,10 +41,14 @@ Outcome change_body(World& world, const Message& command, Change&& change) {
 
 Shape make_shape(const control_t& c) {
   switch (c.shape_type) {
-    case catalog_t::SHAPE_HALF_SPACE: return HalfSpace{};
-    case catalog_t::SHAPE_SPHERE: return Sphere{c.size[0]};
-    case catalog_t::SHAPE_CAPSULE: return Capsule{c.size[0], 0.5 * c.size[1]};
-    default: return Box{0.5 * to_vector(c.size)};
+    case catalog_t::SHAPE_HALF_SPACE:
+      return HalfSpace{};
+    case catalog_t::SHAPE_SPHERE:
+      return Sphere{c.size[0]};
+    case catalog_t::SHAPE_CAPSULE:
+      return Capsule{c.size[0], 0.5 * c.size[1]};
+    default:
+      return Box{0.5 * to_vector(c.size)};
   }
 }
 
@@ -50,7 +58,9 @@ BodyType make_type(std::int8_t code) {
 }
 
 BodyDefinition make_body(const control_t& c) {
-  GeometryDefinition geometry{.name = "shape", .shape = make_shape(c)};
+  GeometryDefinition geometry;
+  geometry.name = "shape";
+  geometry.shape = make_shape(c);
   geometry.material.friction = c.friction;
   geometry.material.restitution = c.restitution;
   for (std::size_t i = 0; i < geometry.color.size(); ++i) geometry.color[i] = c.color[i];

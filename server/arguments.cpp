@@ -46,7 +46,8 @@ CLI::Validator world_name() {
 CLI::Validator demo_name() {
   return CLI::Validator(
       [](std::string& text) {
-        return demo_text(text).empty() ? "there is no demo \"" + text + "\", only " + join_demo_names() : std::string();
+        return demo_text(text).empty() ? "there is no demo \"" + text + "\", only " + join_demo_names()
+                                       : std::string();
       },
       "NAME");
 }
@@ -57,8 +58,11 @@ struct Names {
 
 void add_options(CLI::App& app, Arguments& a, Names& names) {
   auto* scene = app.add_option("scene", a.scene, "Scene to serve, an SDF file (default: the demo pile)");
-  app.add_option("--demo", a.demo, "Built-in scene: " + join_demo_names())->check(demo_name())->excludes(scene);
-  auto* rate = app.add_option("--rate", a.rate, "Steps per second of wall time (default: real time, 1 / time step)");
+  app.add_option("--demo", a.demo, "Built-in scene: " + join_demo_names())
+      ->check(demo_name())
+      ->excludes(scene);
+  auto* rate =
+      app.add_option("--rate", a.rate, "Steps per second of wall time (default: real time, 1 / time step)");
   rate->check(number_within(1e-3, 1e6));
   app.add_flag("--fast", a.fast, "As fast as possible; with --steps and no --lcm-url: without any network")
       ->excludes(rate);
@@ -69,7 +73,8 @@ void add_options(CLI::App& app, Arguments& a, Names& names) {
       ->check(number_within(0.1, 1000.0));
   a.world_name = kDefaultWorld;
   app.add_option("--world", a.world_name, "Prefix of the channels (default TUMBLE)")->check(world_name());
-  app.add_option("--lcm-url", a.lcm_url, "Bus (default: LCM_DEFAULT_URL, else udpm://239.255.76.67:7667?ttl=0)");
+  app.add_option("--lcm-url", a.lcm_url,
+                 "Bus (default: LCM_DEFAULT_URL, else udpm://239.255.76.67:7667?ttl=0)");
   app.add_option("--accuracy", names.accuracy, "Budgets and tolerances (default balanced)")
       ->check(known_name(accuracy_from_name, "fast, balanced, exact"));
   app.add_option("--integrator", names.integrator, "How bodies move through a step (default taylor8)")
@@ -90,8 +95,9 @@ void add_options(CLI::App& app, Arguments& a, Names& names) {
 ParsedArguments parse_arguments(int argc, const char* const* argv) {
   Arguments arguments;
   Names names;
-  CLI::App app("Serves a world of rigid bodies: steps it, streams its state over LCM, takes forces from clients.",
-               "tumble-server");
+  CLI::App app(
+      "Serves a world of rigid bodies: steps it, streams its state over LCM, takes forces from clients.",
+      "tumble-server");
   add_options(app, arguments, names);
   try {
     app.parse(argc, argv);

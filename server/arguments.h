@@ -10,14 +10,14 @@
 namespace tumble {
 
 struct Arguments {
-  std::string scene;               ///< Path of an SDF file; empty: the demo.
+  std::string scene;  ///< Path of an SDF file; empty: the demo.
   std::string demo = "pile";
-  double rate = 0.0;               ///< 0: real time, 1 / time step.
+  double rate = 0.0;  ///< 0: real time, 1 / time step.
   bool fast = false;
-  std::int64_t steps = 0;          ///< 0: until stopped.
+  std::int64_t steps = 0;  ///< 0: until stopped.
   double publish_rate = 0.0;
   std::string world_name;
-  std::string lcm_url;             ///< Empty: the environment's or LCM's default.
+  std::string lcm_url;  ///< Empty: the environment's or LCM's default.
   std::optional<double> time_step;
   std::optional<Accuracy> accuracy;
   std::optional<Integrator> integrator;

@@ -8,7 +8,8 @@ namespace {
 
 __attribute__((constructor(101))) void check_cpu() {
   __builtin_cpu_init();
-  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("bmi2")) return;
+  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("bmi2"))
+    return;
   constexpr std::string_view text =
       "tumble-server: this CPU lacks AVX2, FMA or BMI2, for which the program was built (x86-64-v3).\n"
       "Build it for this one: cmake -B build -DTUMBLE_ARCH=x86-64 && cmake --build build\n";

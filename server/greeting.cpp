@@ -32,9 +32,9 @@ std::string greeting(const ServerSettings& settings, const Bus& bus, const World
   const std::string python = (default_world ? "" : fmt::format("'{}'", name)) +
                              (default_url ? "" : fmt::format("{}url='{}'", default_world ? "" : ", ", url));
   const double dt = world.options().time_step;
-  const std::string pace = settings.rate > 0.0
-                               ? fmt::format("{:g} steps/s ({:g} x real time)", settings.rate, settings.rate * dt)
-                               : "as fast as possible";
+  const std::string pace =
+      settings.rate > 0.0 ? fmt::format("{:g} steps/s ({:g} x real time)", settings.rate, settings.rate * dt)
+                          : "as fast as possible";
   return fmt::format(
       "tumble-server {version}: {scene}, {bodies} bodies, step {dt:g} s, {pace}\n"
       "bus {url}{interface}, state at {publish:g} Hz, messages up to {limit} bytes\n"
@@ -47,10 +47,12 @@ std::string greeting(const ServerSettings& settings, const Bus& bus, const World
       "  ./run spy{spy}\n"
       "  ./run tumble{options} list\n"
       "  ./run tumble{options} push {body} --force 0 0 50 --seconds 0.5\n"
-      "  ./run python -c \"from tumble import World; World({python}).push('{body}', force=(0, 0, 50), seconds=0.5)\"\n"
+      "  ./run python -c \"from tumble import World; World({python}).push('{body}', force=(0, 0, 50), "
+      "seconds=0.5)\"\n"
       "Ctrl-C stops the server.",
-      fmt::arg("version", kVersion), fmt::arg("scene", settings.scene_name), fmt::arg("bodies", world.body_count()),
-      fmt::arg("dt", dt), fmt::arg("pace", pace), fmt::arg("url", url),
+      fmt::arg("version", kVersion), fmt::arg("scene", settings.scene_name),
+      fmt::arg("bodies", world.body_count()), fmt::arg("dt", dt), fmt::arg("pace", pace),
+      fmt::arg("url", url),
       fmt::arg("interface", bus.interface().empty() ? "" : " on interface " + bus.interface()),
       fmt::arg("publish", settings.publish_rate), fmt::arg("limit", bus.payload_limit()), fmt::arg("w", name),
       fmt::arg("spy", spy), fmt::arg("options", options), fmt::arg("body", body), fmt::arg("python", python));

@@ -26,19 +26,21 @@ constexpr int kBusFailed = 1, kBadInput = 2;
 
 volatile std::sig_atomic_t stop_requested = 0;
 
-void request_stop(int) { stop_requested = 1; }
+void request_stop(int) {
+  stop_requested = 1;
+}
 
 void install_signals() {
-  struct sigaction action{};
+  struct sigaction action {};
   action.sa_handler = request_stop;
   ::sigaction(SIGINT, &action, nullptr);
   ::sigaction(SIGTERM, &action, nullptr);
 }
 
 Scene read_scene(const Arguments& arguments) {
-  SceneReading reading = arguments.scene.empty()
-                             ? read_sdf_text(std::string(demo_text(arguments.demo)), "demo " + arguments.demo, ".")
-                             : read_sdf(arguments.scene);
+  SceneReading reading = arguments.scene.empty() ? read_sdf_text(std::string(demo_text(arguments.demo)),
+                                                                 "demo " + arguments.demo, ".")
+                                                 : read_sdf(arguments.scene);
   for (const std::string& warning : reading.warnings) spdlog::warn("{}", warning);
   Options& options = reading.scene.options;
   if (arguments.accuracy) set_accuracy(options, *arguments.accuracy);

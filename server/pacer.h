@@ -30,7 +30,7 @@ class Pacer {
     steps_skipped_ += skipped;
   }
 
-  std::int64_t overruns() const { return overruns_; }            ///< Steps that ended after the next one was due.
+  std::int64_t overruns() const { return overruns_; }  ///< Steps that ended after the next one was due.
   std::int64_t steps_skipped() const { return steps_skipped_; }  ///< Periods given up.
 
  private:

@@ -25,7 +25,9 @@ constexpr std::int64_t kPausedNapNs = 1'000'000;       // between ticks of a pau
 constexpr std::int64_t kWarnAgainNs = 60'000'000'000;  // about the same second server
 constexpr int kRunBits = 16;                           // of the session: counts resets
 
-std::int64_t period_ns(double rate) { return static_cast<std::int64_t>(1e9 / rate); }
+std::int64_t period_ns(double rate) {
+  return static_cast<std::int64_t>(1e9 / rate);
+}
 
 /// Positive, random but for its lowest bits, which count the resets.
 std::int64_t random_session() {
@@ -131,10 +133,15 @@ Outcome Server::apply_control(const control_t& command) {
   changed_ = true;
   const Outcome done{.step = now_step()};
   switch (command.verb) {
-    case control_t::VERB_SPAWN: return apply_spawn(world_, command);
-    case control_t::VERB_REMOVE: return apply_remove(world_, command);
-    case control_t::VERB_SET_STATE: return apply_set_state(world_, command);
-    case control_t::VERB_RESET: reset(); return {.step = now_step()};
+    case control_t::VERB_SPAWN:
+      return apply_spawn(world_, command);
+    case control_t::VERB_REMOVE:
+      return apply_remove(world_, command);
+    case control_t::VERB_SET_STATE:
+      return apply_set_state(world_, command);
+    case control_t::VERB_RESET:
+      reset();
+      return {.step = now_step()};
     case control_t::VERB_PAUSE:
       paused_ = true;
       steps_wanted_ = 0;
@@ -149,11 +156,18 @@ Outcome Server::apply_control(const control_t& command) {
       paused_ = false;
       steps_wanted_ = command.count;
       return done;
-    case control_t::VERB_WATCH: return watch(command);
-    case control_t::VERB_UNWATCH: return unwatch(command);
-    case control_t::VERB_CONTACTS_ON: contacts_wanted_ = true; return done;
-    case control_t::VERB_CONTACTS_OFF: contacts_wanted_ = false; return done;
-    default: return {.status = Status::unknown_verb, .detail = status_text(Status::unknown_verb)};
+    case control_t::VERB_WATCH:
+      return watch(command);
+    case control_t::VERB_UNWATCH:
+      return unwatch(command);
+    case control_t::VERB_CONTACTS_ON:
+      contacts_wanted_ = true;
+      return done;
+    case control_t::VERB_CONTACTS_OFF:
+      contacts_wanted_ = false;
+      return done;
+    default:
+      return {.status = Status::unknown_verb, .detail = status_text(Status::unknown_verb)};
   }
 }
 
@@ -164,7 +178,8 @@ Outcome Server::watch(const control_t& command) {
   const BodyId id{static_cast<std::uint32_t>(found.body), static_cast<std::uint32_t>(found.generation)};
   if (std::find(watched_.begin(), watched_.end(), id) != watched_.end()) return found;
   if (watched_.size() == kMaxWatched) {
-    return {.status = Status::out_of_range, .detail = fmt::format("{} bodies are watched already", kMaxWatched)};
+    return {.status = Status::out_of_range,
+            .detail = fmt::format("{} bodies are watched already", kMaxWatched)};
   }
   watched_.push_back(id);
   return found;
@@ -295,9 +310,11 @@ void Server::notice_heartbeat(Bytes bytes) {
   const auto [known, is_new] = others_.try_emplace(name, now);
   if (!is_new && now < known->second + kWarnAgainNs) return;
   known->second = now;
-  spdlog::warn("another server serves the world {} on this bus: host {}, pid {}, scene {}. Clients hear both; stop one, "
-               "or give one another --world or --lcm-url",
-               settings_.world_name, other.host, other.pid, other.scene);
+  spdlog::warn(
+      "another server serves the world {} on this bus: host {}, pid {}, scene {}. Clients hear both; stop "
+      "one, "
+      "or give one another --world or --lcm-url",
+      settings_.world_name, other.host, other.pid, other.scene);
 }
 
 template <typename Message>

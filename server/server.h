@@ -88,7 +88,7 @@ class Server {
   std::int64_t steps_done_ = 0;
   std::vector<BodyId> watched_;
   bool contacts_wanted_ = false;
-  bool changed_ = true;            // something a receiver should know at once: publish now
+  bool changed_ = true;  // something a receiver should know at once: publish now
 
   std::shared_ptr<const Catalog> catalog_;
   std::uint64_t catalog_model_ = 0;  // the world's model epoch it was made from
@@ -103,7 +103,8 @@ class Server {
   std::uint64_t damaged_logged_ = 0;
   std::int64_t next_damage_log_ = 0;  // now_ns
   std::string host_;
-  std::map<std::string, std::int64_t> others_;  // "host pid" of other servers of this world -> when warned [now_ns]
+  std::map<std::string, std::int64_t>
+      others_;  // "host pid" of other servers of this world -> when warned [now_ns]
 };
 
 }  // namespace tumble

@@ -6,7 +6,9 @@
 namespace tumble {
 namespace {
 
-std::int64_t count(std::uint64_t value) { return static_cast<std::int64_t>(value); }
+std::int64_t count(std::uint64_t value) {
+  return static_cast<std::int64_t>(value);
+}
 
 }  // namespace
 

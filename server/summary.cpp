@@ -11,7 +11,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json to_json(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
+Json to_json(const Vec3& v) {
+  return {v.x(), v.y(), v.z()};
+}
 
 Json counters_json(const Counters& c) {
   const NarrowPhaseCounters& n = c.narrow_phase;
@@ -76,14 +78,15 @@ std::string summary_text(const World& world, const RunTimes& times) {
   const Conserved sums = world.compute_conserved();
   const StepReport& report = world.report();
   return fmt::format(
-      "{} steps of {:g} s ({:g} s simulated) in {:.3f} s of wall time, {:.3f} s of processor time: {:.4f} ms a step\n"
+      "{} steps of {:g} s ({:g} s simulated) in {:.3f} s of wall time, {:.3f} s of processor time: {:.4f} ms "
+      "a step\n"
       "{} bodies, {} awake, {} resting; {} contacts, deepest penetration {:.3g} m\n"
       "kinetic energy {:.9g} J, potential {:.9g} J, momentum ({:.6g}, {:.6g}, {:.6g}) N s\n"
       "state hash {:016x}",
       times.steps, world.options().time_step, world.time(), times.wall_s, times.cpu_s, ms_per_step(times),
-      world.body_count(), report.bodies_awake, report.bodies_resting, report.contacts, report.deepest_penetration,
-      sums.kinetic_energy, sums.potential_energy, sums.momentum.x(), sums.momentum.y(), sums.momentum.z(),
-      world.state_hash());
+      world.body_count(), report.bodies_awake, report.bodies_resting, report.contacts,
+      report.deepest_penetration, sums.kinetic_energy, sums.potential_energy, sums.momentum.x(),
+      sums.momentum.y(), sums.momentum.z(), world.state_hash());
 }
 
 double cpu_seconds() {

@@ -21,8 +21,8 @@ void push(const Acknowledgement& answer, ack_t& message) {
 
 }  // namespace
 
-void pack_acknowledgements(std::span<const Acknowledgement> answers, const ack_t& head, std::size_t payload_limit,
-                           const std::function<void(const ack_t&)>& send) {
+void pack_acknowledgements(std::span<const Acknowledgement> answers, const ack_t& head,
+                           std::size_t payload_limit, const std::function<void(const ack_t&)>& send) {
   ack_t empty{};
   empty.utime = head.utime;
   empty.session = head.session;

@@ -15,9 +15,9 @@ namespace tumble {
 /// What became of a command.
 struct Outcome {
   Status status = Status::applied;
-  std::int64_t step = -1;          ///< It acts from this step on; -1 if refused.
+  std::int64_t step = -1;  ///< It acts from this step on; -1 if refused.
   std::int32_t body = -1, generation = -1;
-  std::string detail{};            ///< For people; empty if all is well.
+  std::string detail{};  ///< For people; empty if all is well.
 };
 
 struct Acknowledgement {
@@ -27,7 +27,7 @@ struct Acknowledgement {
 
 /// Packs `answers` into as few messages as fit the limit and hands each to `send`; utime, session and step come from
 /// `head`. Details are cut to kMaxAckDetail.
-void pack_acknowledgements(std::span<const Acknowledgement> answers, const ack_t& head, std::size_t payload_limit,
-                           const std::function<void(const ack_t&)>& send);
+void pack_acknowledgements(std::span<const Acknowledgement> answers, const ack_t& head,
+                           std::size_t payload_limit, const std::function<void(const ack_t&)>& send);
 
 }  // namespace tumble

@@ -42,7 +42,9 @@ Bus::Bus(const BusAddress& address, const std::string& world)
   if (lcm_ == nullptr) throw BusError("LCM can't open \"" + address.url + "\" (its reason stands above)");
 }
 
-Bus::~Bus() { lcm_destroy(lcm_); }
+Bus::~Bus() {
+  lcm_destroy(lcm_);
+}
 
 bool Bus::publish(const std::string& channel, Bytes payload) {
   return lcm_publish(lcm_, channel.c_str(), payload.data(), static_cast<unsigned>(payload.size())) == 0;

@@ -14,9 +14,12 @@ constexpr std::size_t kVertexRow = 4 + 4 + 4 + 3 * 4;
 
 std::int8_t type_code(BodyType type) {
   switch (type) {
-    case BodyType::fixed: return catalog_t::TYPE_STATIC;
-    case BodyType::dynamic: return catalog_t::TYPE_DYNAMIC;
-    case BodyType::kinematic: return catalog_t::TYPE_KINEMATIC;
+    case BodyType::fixed:
+      return catalog_t::TYPE_STATIC;
+    case BodyType::dynamic:
+      return catalog_t::TYPE_DYNAMIC;
+    case BodyType::kinematic:
+      return catalog_t::TYPE_KINEMATIC;
   }
   return catalog_t::TYPE_STATIC;
 }
@@ -81,7 +84,8 @@ void push_shape(const BodyModel& model, std::size_t number, const ShapeCode& cod
   message.alpha.push_back(part.color[3]);
 }
 
-void push_vertex(const BodyModel& model, std::size_t part, std::size_t number, const Vec3& p, catalog_t& message) {
+void push_vertex(const BodyModel& model, std::size_t part, std::size_t number, const Vec3& p,
+                 catalog_t& message) {
   ++message.num_vertices;
   message.vertex_body.push_back(static_cast<std::int32_t>(model.id.index));
   message.vertex_shape.push_back(static_cast<std::int32_t>(part));
@@ -153,7 +157,8 @@ bool CatalogStream::next(catalog_t& message) {
   // The rest of a body that is listed already belongs to the message before: this one lists those after it.
   const std::uint32_t first = range.listed ? range.slot + 1 : range.slot;
   std::size_t room = payload_limit_ - static_cast<std::size_t>(message.getEncodedSize());
-  while (range.slot < end && add_body(range, message, room)) range = {.slot = range.slot + 1, .end = range.end};
+  while (range.slot < end && add_body(range, message, room))
+    range = {.slot = range.slot + 1, .end = range.end};
   const std::uint32_t last = std::min(range.listed ? range.slot + 1 : range.slot, end);
   message.first_id = static_cast<std::int32_t>(std::min(first, last));
   message.end_id = static_cast<std::int32_t>(last);

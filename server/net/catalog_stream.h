@@ -26,10 +26,10 @@ class CatalogStream {
   /// How far the slots [slot, end) have been told.
   struct Range {
     std::uint32_t slot, end;
-    bool listed = false;        // the row of body `slot` is out
-    std::size_t part = 0;       // shapes of it that are out
-    bool part_listed = false;   // the row of shape `part` is out
-    std::size_t vertex = 0;     // vertices of it that are out
+    bool listed = false;       // the row of body `slot` is out
+    std::size_t part = 0;      // shapes of it that are out
+    bool part_listed = false;  // the row of shape `part` is out
+    std::size_t vertex = 0;    // vertices of it that are out
   };
   void queue_changes(const Catalog* previous);
   void queue_round(std::int64_t now_ns);

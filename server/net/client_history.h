@@ -29,8 +29,8 @@ class ClientHistory {
   };
   struct Client {
     std::int64_t highest = 0;
-    std::uint64_t heard = 0;       // by order of arrival
-    std::vector<Entry> window;     // at sequence modulo kSequenceWindow
+    std::uint64_t heard = 0;    // by order of arrival
+    std::vector<Entry> window;  // at sequence modulo kSequenceWindow
   };
   Client& find_or_make(std::int64_t client);
 

@@ -16,9 +16,13 @@ std::int64_t read_ns(clockid_t clock) {
 
 }  // namespace
 
-std::int64_t SystemClock::wall_us() { return read_ns(CLOCK_REALTIME) / 1000; }
+std::int64_t SystemClock::wall_us() {
+  return read_ns(CLOCK_REALTIME) / 1000;
+}
 
-std::int64_t SystemClock::now_ns() { return read_ns(CLOCK_MONOTONIC); }
+std::int64_t SystemClock::now_ns() {
+  return read_ns(CLOCK_MONOTONIC);
+}
 
 void SystemClock::sleep_until(std::int64_t ns) {
   const timespec until{ns / kNanoseconds, ns % kNanoseconds};

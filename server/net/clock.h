@@ -10,7 +10,8 @@ class Clock {
   virtual ~Clock() = default;
   virtual std::int64_t wall_us() = 0;  ///< Microseconds since 1970: the `utime` of the messages.
   virtual std::int64_t now_ns() = 0;   ///< Never goes back; nanoseconds since some start.
-  virtual void sleep_until(std::int64_t ns) = 0;  ///< Returns at once if `ns` of now_ns has passed; may return early.
+  virtual void sleep_until(
+      std::int64_t ns) = 0;  ///< Returns at once if `ns` of now_ns has passed; may return early.
 };
 
 /// The system's clocks.

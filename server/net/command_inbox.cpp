@@ -22,9 +22,13 @@ void CommandInbox::set_now(std::int64_t session, std::int64_t step) {
   step_ = step;
 }
 
-void CommandInbox::receive_force(Bytes bytes) { receive<force_command_t>(bytes); }
+void CommandInbox::receive_force(Bytes bytes) {
+  receive<force_command_t>(bytes);
+}
 
-void CommandInbox::receive_control(Bytes bytes) { receive<control_t>(bytes); }
+void CommandInbox::receive_control(Bytes bytes) {
+  receive<control_t>(bytes);
+}
 
 template <typename Message>
 void CommandInbox::receive(Bytes bytes) {
@@ -53,19 +57,22 @@ void CommandInbox::admit(const Message& message) {
     case ClientHistory::Novelty::repeated:
       ++counters_.repeated;
       return answer_again(client, sequence);
-    case ClientHistory::Novelty::fresh: break;
+    case ClientHistory::Novelty::fresh:
+      break;
   }
   const std::int64_t start = std::max(message.start_step, step_);
   Outcome outcome = check_values(message);
   if (message.session != 0 && message.session != session_) {
     outcome = {.status = Status::wrong_session, .detail = fmt::format("the session is {}", session_)};
   } else if (message.expiry_step != 0 && message.expiry_step < start) {
-    outcome = {.status = Status::expired, .detail = fmt::format("it could act at step {} at the earliest", start)};
+    outcome = {.status = Status::expired,
+               .detail = fmt::format("it could act at step {} at the earliest", start)};
   } else if (outcome.status == Status::applied && pending_.size() >= kMaxPending) {
     outcome = {.status = Status::queue_full, .detail = fmt::format("{} commands wait", pending_.size())};
   }
   if (outcome.status != Status::applied) return settle(client, sequence, std::move(outcome));
-  pending_.emplace(Key{start, client, sequence}, Command{client, sequence, message.session, message.expiry_step, message});
+  pending_.emplace(Key{start, client, sequence},
+                   Command{client, sequence, message.session, message.expiry_step, message});
   Outcome& noted = *history_.find(client, sequence);
   noted.step = start;
   if (start > step_) answer(client, sequence, noted);

@@ -26,17 +26,22 @@ constexpr int kBatch = 32;  // datagrams a system call
 /// Room for 10 000 commands a second over a pause of 100 ms at the kernel's 1 kB for a small datagram.
 constexpr int kReceiveBuffer = 1 << 20;
 
-[[noreturn]] void fail(const char* what) { throw std::system_error(errno, std::generic_category(), what); }
+[[noreturn]] void fail(const char* what) {
+  throw std::system_error(errno, std::generic_category(), what);
+}
 
 template <typename Value>
 bool set_option(int socket, int level, int name, const Value& value) {
   return ::setsockopt(socket, level, name, &value, sizeof value) == 0;
 }
 
-void add(std::vector<sock_filter>& program, sock_filter instruction) { program.push_back(instruction); }
+void add(std::vector<sock_filter>& program, sock_filter instruction) {
+  program.push_back(instruction);
+}
 
 /// Appends "if the load `load` at byte `at` of the LCM message is `value`, go on, else skip `skip` instructions".
-void add_test(std::vector<sock_filter>& program, int load, std::size_t at, std::uint32_t value, std::size_t skip) {
+void add_test(std::vector<sock_filter>& program, int load, std::size_t at, std::uint32_t value,
+              std::size_t skip) {
   const auto code = static_cast<std::uint16_t>(BPF_LD | BPF_ABS | load);
   add(program, BPF_STMT(code, static_cast<std::uint32_t>(kUdpHeader + at)));
   add(program, BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, value, 0, static_cast<std::uint8_t>(skip)));
@@ -105,7 +110,9 @@ CommandSocket::CommandSocket(const BusAddress& address, const std::string& ignor
   }
 }
 
-CommandSocket::~CommandSocket() { ::close(socket_); }
+CommandSocket::~CommandSocket() {
+  ::close(socket_);
+}
 
 int CommandSocket::receive(int budget, const Handler& handler) {
   std::array<mmsghdr, kBatch> headers;
@@ -122,7 +129,8 @@ int CommandSocket::receive(int budget, const Handler& handler) {
       headers[i].msg_hdr.msg_control = controls[i].data();
       headers[i].msg_hdr.msg_controllen = controls[i].size();
     }
-    const int count = ::recvmmsg(socket_, headers.data(), static_cast<unsigned>(wanted), MSG_DONTWAIT, nullptr);
+    const int count =
+        ::recvmmsg(socket_, headers.data(), static_cast<unsigned>(wanted), MSG_DONTWAIT, nullptr);
     if (count <= 0) break;
     for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
       msghdr& header = headers[i].msg_hdr;
@@ -134,8 +142,8 @@ int CommandSocket::receive(int budget, const Handler& handler) {
       }
       const std::string_view bytes(reinterpret_cast<const char*>(slices[i].iov_base), headers[i].msg_len);
       if (const auto message = parse_message(bytes)) {
-        handler(message->channel, {reinterpret_cast<const std::uint8_t*>(message->payload.data()),
-                                   message->payload.size()});
+        handler(message->channel,
+                {reinterpret_cast<const std::uint8_t*>(message->payload.data()), message->payload.size()});
       }
     }
     total += count;

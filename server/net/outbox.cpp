@@ -7,7 +7,7 @@
 namespace tumble {
 namespace {
 
-constexpr std::size_t kMaxUrgent = 4096;           // messages; more than a second of answers at full pace
+constexpr std::size_t kMaxUrgent = 4096;  // messages; more than a second of answers at full pace
 constexpr std::int64_t kStopNs = 200'000'000;
 
 }  // namespace
@@ -15,7 +15,9 @@ constexpr std::int64_t kStopNs = 200'000'000;
 Outbox::Outbox(std::string world_name, std::size_t payload_limit, Clock& clock, Send send)
     : clock_(clock), send_(std::move(send)), publisher_(std::move(world_name), payload_limit) {}
 
-Outbox::~Outbox() { stop(); }
+Outbox::~Outbox() {
+  stop();
+}
 
 void Outbox::post(std::string channel, std::vector<std::uint8_t> bytes) {
   {

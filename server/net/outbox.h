@@ -24,8 +24,8 @@ struct OutboxCounters {
   std::uint64_t frames = 0;          ///< Publications sent whole.
   std::uint64_t frames_dropped = 0;  ///< Publications replaced by a newer one before their first message.
   std::uint64_t datagrams = 0, bytes = 0;
-  std::uint64_t errors = 0;          ///< Refused by the system, or dropped because too many waited.
-  std::int64_t busy_ns = 0;          ///< Spent choosing, encoding and sending.
+  std::uint64_t errors = 0;  ///< Refused by the system, or dropped because too many waited.
+  std::int64_t busy_ns = 0;  ///< Spent choosing, encoding and sending.
 };
 
 class Outbox {

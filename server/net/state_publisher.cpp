@@ -46,10 +46,10 @@ void StatePublisher::begin(const WorldView& view, std::int64_t now_ns) {
   view_ = &view;
   watched_ = 0;
   contact_chunk_ = 0;
-  num_contact_chunks_ =
-      view.has_contacts
-          ? std::max<std::size_t>(1, (view.contacts.size() + contacts_per_message_ - 1) / contacts_per_message_)
-          : 0;
+  num_contact_chunks_ = view.has_contacts
+                            ? std::max<std::size_t>(1, (view.contacts.size() + contacts_per_message_ - 1) /
+                                                           contacts_per_message_)
+                            : 0;
   state_.begin(view, now_ns);
   catalog_.begin(view, now_ns);
 }

@@ -21,7 +21,8 @@ class StatePublisher {
   bool next(std::string& channel, std::vector<std::uint8_t>& bytes);
 
  private:
-  void encode_watched(const WatchedView& watched, std::string& channel, std::vector<std::uint8_t>& bytes) const;
+  void encode_watched(const WatchedView& watched, std::string& channel,
+                      std::vector<std::uint8_t>& bytes) const;
   void encode_contacts(std::vector<std::uint8_t>& bytes);
 
   std::string world_name_, state_channel_, catalog_channel_, contacts_channel_;

@@ -29,9 +29,9 @@ class StateStream {
   std::size_t bodies_per_message_;
   const WorldView* view_ = nullptr;
   std::int64_t session_ = 0;
-  std::vector<BodyView> sent_;          // by slot, as receivers know them
+  std::vector<BodyView> sent_;           // by slot, as receivers know them
   std::vector<std::uint32_t> selected_;  // slots, ascending
-  std::vector<std::uint8_t> due_;       // by slot: chosen by the refresh
+  std::vector<std::uint8_t> due_;        // by slot: chosen by the refresh
   Rolling refresh_{kRefreshPeriod};
   std::uint32_t refresh_slot_ = 0;
   std::size_t chunk_ = 0, num_chunks_ = 0;

@@ -51,8 +51,9 @@ void copy_bodies(const World& world, WorldView& view) {
     const Motion& motion = world.motion(slot);
     body.generation = world.id(slot).generation;
     body.flags = body_flags(world, slot);
-    body.values = {motion.x.x(), motion.x.y(), motion.x.z(), motion.q.w(), motion.q.x(), motion.q.y(), motion.q.z(),
-                   motion.v.x(), motion.v.y(), motion.v.z(), motion.w.x(), motion.w.y(), motion.w.z()};
+    body.values = {motion.x.x(), motion.x.y(), motion.x.z(), motion.q.w(), motion.q.x(),
+                   motion.q.y(), motion.q.z(), motion.v.x(), motion.v.y(), motion.v.z(),
+                   motion.w.x(), motion.w.y(), motion.w.z()};
   }
 }
 
@@ -65,8 +66,8 @@ void copy_watched(const World& world, const std::vector<BodyId>& watched, WorldV
     if (world.body(id.index).type == BodyType::dynamic) {
       const Motion& motion = world.motion(id.index);
       entry.L = motion.L;
-      entry.kinetic_energy = 0.5 * (world.mass_properties(id.index).mass * motion.v.squaredNorm() +
-                                    motion.w.dot(motion.L));
+      entry.kinetic_energy =
+          0.5 * (world.mass_properties(id.index).mass * motion.v.squaredNorm() + motion.w.dot(motion.L));
     }
     view.watched.push_back(entry);
   }
@@ -82,8 +83,8 @@ void copy_contacts(const World& world, WorldView& view) {
     for (int i = 0; i < contact.manifold.count; ++i) {
       const auto k = static_cast<std::size_t>(i);
       const ManifoldPoint& point = contact.manifold.points[k];
-      view.contacts.push_back({contact.body_a, contact.body_b, X_WA * point.p_A, X_WA.q * contact.manifold.normal_A,
-                               contact.impulse[k], point.separation});
+      view.contacts.push_back({contact.body_a, contact.body_b, X_WA * point.p_A,
+                               X_WA.q * contact.manifold.normal_A, contact.impulse[k], point.separation});
     }
   }
 }

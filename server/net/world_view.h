@@ -26,8 +26,8 @@ struct BodyModel {
   BodyId id;
   std::string name;
   BodyType type = BodyType::fixed;
-  double mass = 0.0;            ///< 0 unless dynamic, as the inertia.
-  Mat3 I_B = Mat3::Zero();      ///< About the centre of mass, link axes.
+  double mass = 0.0;        ///< 0 unless dynamic, as the inertia.
+  Mat3 I_B = Mat3::Zero();  ///< About the centre of mass, link axes.
   Vec3 p_LB = Vec3::Zero();
   struct Part {
     Shape shape;

@@ -64,11 +64,13 @@ class PolytopeReference {
       const auto loop = polytope.loop(face);
       Vec3L n = Vec3L::Zero();
       for (std::size_t i = 0; i < loop.size(); ++i) {
-        n += (vertices[loop[i]] - vertices[loop[0]]).cross(vertices[loop[(i + 1) % loop.size()]] - vertices[loop[0]]);
+        n += (vertices[loop[i]] - vertices[loop[0]])
+                 .cross(vertices[loop[(i + 1) % loop.size()]] - vertices[loop[0]]);
       }
       add_axis(n.normalized());
     }
-    for (const ConvexHull::Edge& edge : polytope.edges) edges_.push_back(vertices[edge.head] - vertices[edge.tail]);
+    for (const ConvexHull::Edge& edge : polytope.edges)
+      edges_.push_back(vertices[edge.head] - vertices[edge.tail]);
   }
 
   std::vector<Vec3L> vertices_a_, vertices_b_, edges_, axes_;

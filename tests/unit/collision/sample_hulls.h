@@ -47,7 +47,8 @@ inline HullPointer random_hull(RandomPose& random, int points, const Vec3& radii
     for (std::uint32_t j = 0; j < n; ++j) {
       for (std::uint32_t k = 0; k < n; ++k) {
         if (j <= i || k <= i || j == k) continue;
-        const Vec3 normal = (hull.vertices[j] - hull.vertices[i]).cross(hull.vertices[k] - hull.vertices[i]).normalized();
+        const Vec3 normal =
+            (hull.vertices[j] - hull.vertices[i]).cross(hull.vertices[k] - hull.vertices[i]).normalized();
         const double offset = normal.dot(hull.vertices[i]);
         bool outer = true;
         for (std::uint32_t m = 0; m < n && outer; ++m) {

@@ -1,0 +1,187 @@
+// What one query of the narrow phase costs, beside plain libccd's penetration queries on the same pairs. 512 poses a
+// class; "cold" forgets the pair before each query, "warm" keeps each pair's memory while nothing moves.
+#include <benchmark/benchmark.h>
+#include <ccd/ccd.h>
+
+#include <random>
+#include <string>
+#include <vector>
+
+#include "collision/narrow_phase.h"
+#include "math/rotation.h"
+
+namespace {
+
+using namespace tumble;
+
+struct Pair {
+  Shape a, b;
+  Pose X_WA, X_WB;
+};
+
+class Source {
+ public:
+  double uniform(double low, double high) {
+    return low + (high - low) * (static_cast<double>(engine_()) / 4294967296.0);
+  }
+  Vec3 vector(double low, double high) {
+    Vec3 v;
+    for (int i = 0; i < 3; ++i) v[i] = uniform(low, high);
+    return v;
+  }
+  Quat rotation() {
+    Quat q;
+    for (int i = 0; i < 4; ++i) q.coeffs()[i] = uniform(-1.0, 1.0);
+    return normalized(q);
+  }
+
+ private:
+  std::mt19937 engine_{1};
+};
+
+/// B rests on A's top, turned by q, sunk in by depth [m].
+Pair rest_on_top(Source& source, const Shape& a, double top, const Shape& b, const Quat& q, double depth) {
+  const double height = -(q * support(b, q.conjugate() * -Vec3::UnitZ())).z();
+  const Pose X_WA{source.rotation(), source.vector(-10.0, 10.0)};
+  return {a, b, X_WA, X_WA * Pose{q, Vec3(0.1, 0.05, top + height - depth)}};
+}
+
+Pair box_face(Source& source) {
+  const Box a{source.vector(0.3, 1.0)}, b{source.vector(0.3, 1.0)};
+  const double yaw = source.uniform(-1.0, 1.0);
+  return rest_on_top(source, a, a.half_extents.z(), b, exp_map(Vec3(0, 0, yaw)), 1e-4);
+}
+
+Pair box_edge(Source& source) {
+  const Box a{source.vector(0.3, 1.0)}, b{source.vector(0.3, 1.0)};
+  const double roll_a = source.uniform(0.5, 1.0), roll_b = source.uniform(0.5, 1.0),
+               yaw = source.uniform(0.4, 2.7);
+  const Quat q_A = exp_map(Vec3(roll_a, 0, 0)), q_B = exp_map(Vec3(0, 0, yaw)) * exp_map(Vec3(roll_b, 0, 0));
+  const Vec3 roof = q_A * Vec3(0, a.half_extents.y(), a.half_extents.z());
+  const Vec3 floor = q_B * Vec3(0, -b.half_extents.y(), -b.half_extents.z());
+  const Pose X_W{source.rotation(), source.vector(-10.0, 10.0)};
+  return {a, b, X_W * Pose{q_A, -roof}, X_W * Pose{q_B, -floor - Vec3(0, 0, 1e-4)}};
+}
+
+Pair box_deep(Source& source) {
+  const Box a{source.vector(0.3, 1.0)}, b{source.vector(0.3, 1.0)};
+  const Pose X_WA{source.rotation(), source.vector(-10.0, 10.0)};
+  const Pose X_AB{source.rotation(), source.vector(-0.4, 0.4)};
+  return {a, b, X_WA, X_WA * X_AB};
+}
+
+Pair sphere_sphere(Source& source) {
+  const Pose X_WA{Quat::Identity(), source.vector(-10.0, 10.0)};
+  const Vec3 d = source.vector(-1.0, 1.0).normalized();
+  return {Sphere{0.5}, Sphere{0.4}, X_WA, {Quat::Identity(), X_WA.p + 0.8999 * d}};
+}
+
+/// 32 random points on a sphere of radius 0.5.
+HullPointer hull32(Source& source) {
+  std::vector<Vec3> points;
+  for (int i = 0; i < 32; ++i) points.push_back(0.5 * source.vector(-1.0, 1.0).normalized());
+  return std::make_shared<const ConvexHull>(build_convex_hull(points));
+}
+
+Pair hull_pair(Source& source, double depth) {
+  static const HullPointer hull = hull32(source);
+  const Quat q = source.rotation();
+  const Vec3 n = source.vector(-1.0, 1.0).normalized();
+  const Vec3 p = support(hull, n) - q * support(hull, q.conjugate() * -n) - depth * n;
+  const Pose X_WA{source.rotation(), source.vector(-10.0, 10.0)};
+  return {hull, hull, X_WA, X_WA * Pose{q, p}};
+}
+Pair hull_shallow(Source& source) {
+  return hull_pair(source, 1e-3);
+}
+Pair hull_deep(Source& source) {
+  return hull_pair(source, 0.1);
+}
+
+using Make = Pair (*)(Source&);
+
+std::vector<Pair> make_pairs(Make make) {
+  Source source;
+  std::vector<Pair> pairs;
+  for (int i = 0; i < 512; ++i) pairs.push_back(make(source));
+  return pairs;
+}
+
+void tumble_contacts(benchmark::State& state, Make make, bool keep_memory) {
+  const std::vector<Pair> pairs = make_pairs(make);
+  std::vector<PairCache> caches(pairs.size());
+  NarrowPhaseCounters counters;
+  std::size_t i = 0;
+  std::uint64_t points = 0;
+  for (auto _ : state) {
+    const Pair& pair = pairs[i];
+    PairCache cold;
+    const Manifold m =
+        collide(pair.a, pair.X_WA, pair.b, pair.X_WB, 0.0, {}, keep_memory ? caches[i] : cold, counters);
+    points += static_cast<std::uint64_t>(m.count);
+    benchmark::DoNotOptimize(m.normal_A);
+    i = (i + 1) % pairs.size();
+  }
+  state.counters["points"] = static_cast<double>(points) / static_cast<double>(state.iterations());
+}
+
+struct PlacedShape {
+  const Shape* shape;
+  Mat3 R;
+  Vec3 p;
+};
+
+void ccd_support(const void* object, const ccd_vec3_t* direction, ccd_vec3_t* out) {
+  const PlacedShape& placed = *static_cast<const PlacedShape*>(object);
+  const Vec3 d(direction->v[0], direction->v[1], direction->v[2]);
+  const Vec3 v = placed.R * support(*placed.shape, placed.R.transpose() * d) + placed.p;
+  ccdVec3Set(out, v.x(), v.y(), v.z());
+}
+void ccd_centre(const void* object, ccd_vec3_t* out) {
+  const Vec3& p = static_cast<const PlacedShape*>(object)->p;
+  ccdVec3Set(out, p.x(), p.y(), p.z());
+}
+
+/// Default tolerances; the iteration limit keeps touching pairs from cycling for ever.
+void plain_libccd(benchmark::State& state, Make make, bool mpr) {
+  const std::vector<Pair> pairs = make_pairs(make);
+  ccd_t ccd;
+  CCD_INIT(&ccd);
+  ccd.support1 = ccd.support2 = ccd_support;
+  ccd.center1 = ccd.center2 = ccd_centre;
+  ccd.max_iterations = 500;
+  std::size_t i = 0;
+  for (auto _ : state) {
+    const Pair& pair = pairs[i];
+    const PlacedShape a{&pair.a, rotation_matrix(pair.X_WA.q), pair.X_WA.p};
+    const PlacedShape b{&pair.b, rotation_matrix(pair.X_WB.q), pair.X_WB.p};
+    ccd_real_t depth = 0;
+    ccd_vec3_t normal, position;
+    benchmark::DoNotOptimize(mpr ? ccdMPRPenetration(&a, &b, &ccd, &depth, &normal, &position)
+                                 : ccdGJKPenetration(&a, &b, &ccd, &depth, &normal, &position));
+    benchmark::DoNotOptimize(depth);
+    i = (i + 1) % pairs.size();
+  }
+}
+
+void add_class(const std::string& name, Make make) {
+  benchmark::RegisterBenchmark((name + "/tumble_cold").c_str(), tumble_contacts, make, false);
+  benchmark::RegisterBenchmark((name + "/tumble_warm").c_str(), tumble_contacts, make, true);
+  benchmark::RegisterBenchmark((name + "/ccdGJKPenetration").c_str(), plain_libccd, make, false);
+  benchmark::RegisterBenchmark((name + "/ccdMPRPenetration").c_str(), plain_libccd, make, true);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  add_class("box_face", box_face);
+  add_class("box_edge", box_edge);
+  add_class("box_deep", box_deep);
+  add_class("sphere_sphere", sphere_sphere);
+  add_class("hull32_shallow", hull_shallow);
+  add_class("hull32_deep", hull_deep);
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
+  benchmark::RunSpecifiedBenchmarks();
+  return 0;
+}

@@ -1,0 +1,80 @@
+// An island rests only when it is proven still, or has been calm for long; and only if something holds it.
+#include "dynamics/rest.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace tumble {
+namespace {
+
+constexpr RestSettings kSettings;
+
+ContactProblem island(double speed) {
+  ContactProblem problem;
+  problem.h = 1.0 / 64;
+  SolverBody body;
+  body.inv_mass = 2.0;
+  body.v = body.v0 = Vec3(0.0, 0.6 * speed, 0.0);
+  body.w = body.w0 = Vec3(0.0, 0.0, 0.4 * speed);
+  SolverBody belt = body;  // immovable: its speed is not the island's
+  belt.inv_mass = 0.0;
+  belt.v = belt.v0 = Vec3(5.0, 0.0, 0.0);
+  problem.bodies = {belt, body};
+  problem.contacts.resize(1);
+  return problem;
+}
+
+bool rests_at_once(double speed, double residual) {
+  double calm_for = 0.0;
+  return check_rest(island(speed), residual, kSettings, calm_for);
+}
+
+TEST(Rest, SpeedIsTheLargestOfTheMovableBodies) {
+  EXPECT_DOUBLE_EQ(island_speed(island(0.3)), 0.3);
+}
+
+TEST(Rest, IsCertifiedByResidualAndSpeedTogether) {
+  const double limit = std::min(kSettings.speed, kSettings.acceleration / 64);
+  EXPECT_TRUE(rests_at_once(0.99 * limit, 0.99 * kSettings.residual));
+  EXPECT_FALSE(rests_at_once(1.01 * limit, 0.0));
+  EXPECT_FALSE(rests_at_once(0.0, 1.01 * kSettings.residual));
+  EXPECT_FALSE(rests_at_once(0.0, std::nan("")));
+}
+
+TEST(Rest, ATurningPointIsNotRest) {
+  ContactProblem problem = island(0.0);
+  problem.bodies[1].v0 = Vec3(0.0, 0.0, -0.01);
+  double calm_for = 0.0;
+  EXPECT_FALSE(check_rest(problem, 0.0, kSettings, calm_for));
+}
+
+TEST(Rest, AShortStepDoesNotHideAnAcceleration) {
+  // One step of the acceleration limit stays below the speed limit; it must not count as rest.
+  ContactProblem problem = island(7e-8);
+  problem.h = 1e-3;  // limit 6e-8 m/s
+  double calm_for = 0.0;
+  EXPECT_FALSE(check_rest(problem, 0.0, kSettings, calm_for));
+}
+
+TEST(Rest, ComesAfterACalmTimeAndAnyHasteStartsItAnew) {
+  double calm_for = 0.0;
+  const double slow = 0.9 * kSettings.calm_speed;
+  for (int i = 1; i < 32; ++i) EXPECT_FALSE(check_rest(island(slow), 1.0, kSettings, calm_for)) << i;
+  EXPECT_FALSE(check_rest(island(2.0 * kSettings.calm_speed), 1.0, kSettings, calm_for));
+  EXPECT_EQ(calm_for, 0.0);
+  for (int i = 1; i < 32; ++i) EXPECT_FALSE(check_rest(island(slow), 1.0, kSettings, calm_for)) << i;
+  EXPECT_TRUE(check_rest(island(slow), 1.0, kSettings, calm_for));  // 32/64 s = calm_time
+}
+
+TEST(Rest, NothingHoldsABodyWithoutContact) {
+  ContactProblem problem = island(0.0);
+  problem.contacts.clear();
+  double calm_for = 100.0;
+  EXPECT_FALSE(check_rest(problem, 0.0, kSettings, calm_for));
+  problem.rows.resize(1);
+  EXPECT_TRUE(check_rest(problem, 0.0, kSettings, calm_for));
+}
+
+}  // namespace
+}  // namespace tumble

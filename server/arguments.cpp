@@ -61,9 +61,9 @@ void add_options(CLI::App& app, Arguments& a, Names& names) {
   app.add_option("--demo", a.demo, "Built-in scene: " + join_demo_names())
       ->check(demo_name())
       ->excludes(scene);
-  auto* rate =
-      app.add_option("--rate", a.rate, "Steps per second of wall time (default: real time, 1 / time step)");
-  rate->check(number_within(1e-3, 1e6));
+  auto* rate = app.add_option("--rate", a.rate,
+                              "Steps per second of wall time, 1 to 1e6 (default: real time, 1 / time step)");
+  rate->check(number_within(1.0, 1e6));
   app.add_flag("--fast", a.fast, "As fast as possible; with --steps and no --lcm-url: without any network")
       ->excludes(rate);
   app.add_option("--steps", a.steps, "Stop after so many steps")

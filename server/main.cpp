@@ -1,5 +1,5 @@
-// tumble-server: arguments -> scene -> world -> server. Exit status 0: ran and ended as asked; 1: the bus can't be
-// used; 2: wrong arguments or scene, nothing was started.
+// tumble-server: arguments -> scene -> world -> server. Exit status 0: ran and ended as asked; 1: the system
+// refused something, such as the bus; 2: wrong arguments or scene, nothing was started.
 #include <fmt/format.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
@@ -22,7 +22,7 @@ namespace {
 
 using namespace tumble;
 
-constexpr int kBusFailed = 1, kBadInput = 2;
+constexpr int kFailed = 1, kBadInput = 2;
 
 volatile std::sig_atomic_t stop_requested = 0;
 
@@ -138,13 +138,14 @@ int main(int argc, char** argv) {
   }
   try {
     return serve(*parsed.arguments);
-  } catch (const BusError& error) {
-    spdlog::error("{}", error.what());
-    return kBusFailed;
   } catch (const SceneError& error) {
     spdlog::error("{}", error.what());
+    return kBadInput;
   } catch (const std::invalid_argument& error) {
     spdlog::error("{}", error.what());
+    return kBadInput;
+  } catch (const std::exception& error) {
+    spdlog::error("{}", error.what());
+    return kFailed;
   }
-  return kBadInput;
 }

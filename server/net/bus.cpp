@@ -40,6 +40,11 @@ Bus::Bus(const BusAddress& address, const std::string& world)
   }
   lcm_ = lcm_create(address.url.c_str());
   if (lcm_ == nullptr) throw BusError("LCM can't open \"" + address.url + "\" (its reason stands above)");
+  // A tcpq server that isn't there is only told by this; liblcm would abort in its first receive.
+  if (address.provider == "tcpq" && lcm_get_fileno(lcm_) < 0) {
+    lcm_destroy(lcm_);
+    throw BusError("LCM can't reach \"" + address.url + "\"");
+  }
 }
 
 Bus::~Bus() {

@@ -1,7 +1,9 @@
 // See outbox.h.
 #include "net/outbox.h"
 
-#include <chrono>
+#include <signal.h>
+
+#include <algorithm>
 #include <utility>
 
 namespace tumble {
@@ -113,7 +115,12 @@ void Outbox::send_next() {
 
 void Outbox::start() {
   stopping_ = false;
+  // Signals are for the thread that started this one: they must end its sleep.
+  sigset_t all, kept;
+  ::sigfillset(&all);
+  ::pthread_sigmask(SIG_BLOCK, &all, &kept);
   thread_ = std::thread([this] { run(); });
+  ::pthread_sigmask(SIG_SETMASK, &kept, nullptr);
 }
 
 void Outbox::stop() {

@@ -41,7 +41,8 @@ Buffer read_block(int index) {
     std::smatch match;
     if (!inside || block != index || !std::regex_search(line, match, hex)) continue;
     std::istringstream words(match.str());
-    for (std::string word; words >> word;) bytes.push_back(static_cast<std::uint8_t>(std::stoi(word, nullptr, 16)));
+    for (std::string word; words >> word;)
+      bytes.push_back(static_cast<std::uint8_t>(std::stoi(word, nullptr, 16)));
   }
   return bytes;
 }
@@ -50,7 +51,8 @@ template <typename Message>
 void expect_fingerprint(const std::string& name) {
   char text[17];
   std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(Message::getHash()));
-  EXPECT_NE(read_standard().find("| " + name + " | " + text + " |"), std::string::npos) << name << " is " << text;
+  EXPECT_NE(read_standard().find("| " + name + " | " + text + " |"), std::string::npos)
+      << name << " is " << text;
 }
 
 TEST(Standard, FingerprintsAreThoseOfTheTypes) {

@@ -45,8 +45,8 @@ class TumbleServer : public testing::Test {
     bus_.subscribe("T_ACK", [this](Bytes bytes) {
       const ack_t m = read<ack_t>(bytes);
       for (std::size_t i = 0; i < m.status.size(); ++i) {
-        answers_[m.sequence[i]].push_back({static_cast<Status>(m.status[i]), m.applied_step[i], m.body[i],
-                                           m.generation[i], m.detail[i]});
+        answers_[m.sequence[i]].push_back(
+            {static_cast<Status>(m.status[i]), m.applied_step[i], m.body[i], m.generation[i], m.detail[i]});
       }
     });
     bus_.subscribe("T_STATE", [this](Bytes bytes) { states_.push_back(read<state_t>(bytes)); });
@@ -78,7 +78,8 @@ class TumbleServer : public testing::Test {
     for (int i = 0; i < count; ++i) {
       clock_.pass(kStep);
       server_->tick();
-      for (std::int64_t due = outbox_.pump(); due != Outbox::kIdle; due = outbox_.pump()) clock_.sleep_until(due);
+      for (std::int64_t due = outbox_.pump(); due != Outbox::kIdle; due = outbox_.pump())
+        clock_.sleep_until(due);
     }
   }
   void send(const force_command_t& command) { send_to("T_FORCE", command); }

@@ -95,7 +95,7 @@ TEST(SdfMutation, DamagedScenesAreReadOrRefused) {
       EXPECT_EQ(std::string(error.what()).find("m.sdf:"), 0u) << error.what();
     }
   }
-  EXPECT_GT(read_count, kMutations / 20);  // 352 of 4000 measured
+  EXPECT_GT(read_count, kMutations / 20);  // 346 of 4000 measured
   EXPECT_GT(refused, kMutations / 20);
 }
 

@@ -35,7 +35,8 @@ Axis find_face_axis(const BoxPair& pair, double margin, double preference, bool&
     const int k = i % 3;
     const bool of_a = i < 3;
     const double centre = of_a ? pair.t[k] : pair.R.col(k).dot(pair.t);
-    const double extents = of_a ? pair.a[k] + pair.R_abs.row(k).dot(pair.b) : pair.b[k] + pair.R_abs.col(k).dot(pair.a);
+    const double extents =
+        of_a ? pair.a[k] + pair.R_abs.row(k).dot(pair.b) : pair.b[k] + pair.R_abs.col(k).dot(pair.a);
     const double separation = std::abs(centre) - extents;
     beyond = separation > margin;
     if (!beyond && separation <= best.separation + preference) continue;
@@ -76,8 +77,9 @@ Axis find_edge_axis(const BoxPair& pair, double margin, double at_least, bool& b
       const bool honest = length2 < kNearlyParallel;
       const double floor = std::max(best.separation, at_least);
       // Compare without the square root: scaled / length > floor.
-      if (!honest && (scaled < 0.0 ? floor >= 0.0 || scaled * scaled > floor * floor * length2 * (1.0 + 1e-12)
-                                   : floor > 0.0 && scaled * scaled < floor * floor * length2 * (1.0 - 1e-12))) {
+      if (!honest &&
+          (scaled < 0.0 ? floor >= 0.0 || scaled * scaled > floor * floor * length2 * (1.0 + 1e-12)
+                        : floor > 0.0 && scaled * scaled < floor * floor * length2 * (1.0 - 1e-12))) {
         continue;
       }
       const Axis axis = evaluate_edge_axis(pair, i, j, std::sqrt(length2), honest);
@@ -133,7 +135,8 @@ Manifold clip_faces(const BoxPair& pair, const Axis& axis, double margin) {
 }
 
 /// Of a box with axes as columns of R: the edge along axis `i` that reaches furthest along n.
-Segment edge_along(const Vec3& h, const Mat3& R, const Vec3& centre, int i, const Vec3& n, std::uint32_t& id) {
+Segment edge_along(const Vec3& h, const Mat3& R, const Vec3& centre, int i, const Vec3& n,
+                   std::uint32_t& id) {
   Segment edge{centre, h[i] * R.col(i)};
   id = static_cast<std::uint32_t>(i);
   for (const int k : {(i + 1) % 3, (i + 2) % 3}) {
@@ -164,7 +167,8 @@ Manifold collide_box_box(const Box& a, const Box& b, const Pose& X_AB, double ma
   Axis best = find_face_axis(pair, margin, preference.face, beyond);
   if (!beyond) {
     const Axis edge = find_edge_axis(pair, margin, best.separation, beyond);
-    crossing = beyond || preference.takes_edge(best.separation, best.normal_A, edge.separation, edge.normal_A, edge.sin2);
+    crossing = beyond || preference.takes_edge(best.separation, best.normal_A, edge.separation, edge.normal_A,
+                                               edge.sin2);
     if (crossing) best = edge;
   }
   cache.axis_A = best.normal_A;

@@ -176,7 +176,8 @@ Manifold collide_core(const CapsuleQuery& q, PairCache& cache) {
                       mix_features(nearest.index, 0, 4));
 }
 
-Manifold collide_polytope(const Capsule& a, const Polytope& b, const Pose& X_AB, double margin, PairCache& cache) {
+Manifold collide_polytope(const Capsule& a, const Polytope& b, const Pose& X_AB, double margin,
+                          PairCache& cache) {
   const Pose X_BA = X_AB.inverse();
   return collide_core({b, {X_BA.p, X_BA.q * Vec3(0, 0, a.half_length)}, a.radius, X_AB, margin}, cache);
 }
@@ -201,7 +202,8 @@ Manifold collide_capsule_capsule(const Capsule& a, const Capsule& b, const Pose&
   return make_segment_manifold({core_a, a.radius}, {core_b, b.radius}, normal_A, margin, merge, 0);
 }
 
-Manifold collide_capsule_box(const Capsule& a, const Box& b, const Pose& X_AB, double margin, PairCache& cache) {
+Manifold collide_capsule_box(const Capsule& a, const Box& b, const Pose& X_AB, double margin,
+                             PairCache& cache) {
   const BoxFeatures box(b);
   return collide_polytope(a, box.view(), X_AB, margin, cache);
 }

@@ -11,7 +11,8 @@ namespace tumble {
 Manifold collide_capsule_capsule(const Capsule& a, const Capsule& b, const Pose& X_AB, double margin);
 
 /// Exact features: the cache gets the axis and the gap when apart.
-Manifold collide_capsule_box(const Capsule& a, const Box& b, const Pose& X_AB, double margin, PairCache& cache);
+Manifold collide_capsule_box(const Capsule& a, const Box& b, const Pose& X_AB, double margin,
+                             PairCache& cache);
 Manifold collide_capsule_hull(const Capsule& a, const HullPointer& b, const Pose& X_AB, double margin,
                               PairCache& cache);
 

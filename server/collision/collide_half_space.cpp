@@ -7,7 +7,9 @@
 namespace tumble {
 namespace {
 
-Vec3 middle_of_gap(const Vec3& p_A) { return {p_A.x(), p_A.y(), 0.5 * p_A.z()}; }
+Vec3 middle_of_gap(const Vec3& p_A) {
+  return {p_A.x(), p_A.y(), 0.5 * p_A.z()};
+}
 
 }  // namespace
 

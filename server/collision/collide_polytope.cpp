@@ -36,8 +36,8 @@ std::size_t lowest_along(const PlacedFace& placed, const Vec3& n_A) {
   return lowest;
 }
 
-Manifold clip_faces(const PlacedFace& reference, const PlacedFace& incident, const Vec3& normal_A, double margin,
-                    std::uint32_t faces) {
+Manifold clip_faces(const PlacedFace& reference, const PlacedFace& incident, const Vec3& normal_A,
+                    double margin, std::uint32_t faces) {
   FacePlane plane;
   plane.n_A = reference.R * reference.face.normal;
   plane.origin_A = reference.vertex_A(0, 0);
@@ -50,7 +50,8 @@ Manifold clip_faces(const PlacedFace& reference, const PlacedFace& incident, con
   for (int k = 0; k < incident.count(); ++k) polygon.add_vertex(plane.to_plane(incident.vertex_A(k, first)));
   polygon.close();
 
-  const double width = std::min(face_width(reference.body, reference.face), face_width(incident.body, incident.face));
+  const double width =
+      std::min(face_width(reference.body, reference.face), face_width(incident.body, incident.face));
   const ContactTolerance tolerance = ContactTolerance::of(width);
   Vec3 tail = Vec3::Zero();
   for (int k = 0; k < reference.count(); ++k) {
@@ -73,9 +74,11 @@ Manifold make_manifold(const PolytopePair& pair, const Facet& facet, double marg
     const Vec3 &tail_a = pair.a.vertices[edge_a.tail], &head_a = pair.a.vertices[edge_a.head];
     const Vec3 tail_b = pair.R_AB * pair.b.vertices[edge_b.tail] + pair.p_AB;
     const Vec3 head_b = pair.R_AB * pair.b.vertices[edge_b.head] + pair.p_AB;
-    const Segment a{0.5 * (tail_a + head_a), 0.5 * (head_a - tail_a)}, b{0.5 * (tail_b + head_b), 0.5 * (head_b - tail_b)};
+    const Segment a{0.5 * (tail_a + head_a), 0.5 * (head_a - tail_a)},
+        b{0.5 * (tail_b + head_b), 0.5 * (head_b - tail_b)};
     const double merge = ContactTolerance::of(std::min(a.reach.norm(), b.reach.norm())).merge;
-    return make_segment_manifold({a, 0.0}, {b, 0.0}, facet.normal_A, margin, merge, mix_features(facet.a, facet.b, 1));
+    return make_segment_manifold({a, 0.0}, {b, 0.0}, facet.normal_A, margin, merge,
+                                 mix_features(facet.a, facet.b, 1));
   }
   const bool of_a = facet.kind == Facet::Kind::face_a;
   const std::uint32_t face_a = of_a ? facet.a : face_towards(pair.a, facet.normal_A);
@@ -83,14 +86,17 @@ Manifold make_manifold(const PolytopePair& pair, const Facet& facet, double marg
   const PlacedFace a{pair.a, pair.a.faces[face_a], identity, zero};
   const PlacedFace b{pair.b, pair.b.faces[face_b], pair.R_AB, pair.p_AB};
   const std::uint32_t faces = mix_features(face_a, face_b, of_a ? 2 : 3);
-  return of_a ? clip_faces(a, b, facet.normal_A, margin, faces) : clip_faces(b, a, facet.normal_A, margin, faces);
+  return of_a ? clip_faces(a, b, facet.normal_A, margin, faces)
+              : clip_faces(b, a, facet.normal_A, margin, faces);
 }
 
 /// The facet of the last search if its lead (kept by the pipeline) still holds, else a new search.
-FacetAnswer choose_facet(const PolytopePair& pair, double margin, const AxisPreference& preference, PairCache& cache) {
+FacetAnswer choose_facet(const PolytopePair& pair, double margin, const AxisPreference& preference,
+                         PairCache& cache) {
   if (cache.slack > 0.0) {
     const Facet facet = recall_facet(pair, cache);
-    if (facet.kind != Facet::Kind::none && facet.separation + preference.face < margin) return {facet, cache.slack};
+    if (facet.kind != Facet::Kind::none && facet.separation + preference.face < margin)
+      return {facet, cache.slack};
   }
   return find_facet(pair, margin, preference, cache);
 }
@@ -114,7 +120,8 @@ Manifold collide(const PolytopePair& pair, double margin, PairCache& cache) {
 
 }  // namespace
 
-Manifold collide_box_hull(const Box& a, const HullPointer& b, const Pose& X_AB, double margin, PairCache& cache) {
+Manifold collide_box_hull(const Box& a, const HullPointer& b, const Pose& X_AB, double margin,
+                          PairCache& cache) {
   const BoxFeatures box(a);
   return collide({box.view(), view_of(*b), rotation_matrix(X_AB.q), X_AB.p}, margin, cache);
 }

@@ -9,7 +9,8 @@
 namespace tumble {
 
 /// The cache gets the axis, the gap when apart, and the winning facet with its lead.
-Manifold collide_box_hull(const Box& a, const HullPointer& b, const Pose& X_AB, double margin, PairCache& cache);
+Manifold collide_box_hull(const Box& a, const HullPointer& b, const Pose& X_AB, double margin,
+                          PairCache& cache);
 Manifold collide_hull_hull(const HullPointer& a, const HullPointer& b, const Pose& X_AB, double margin,
                            PairCache& cache);
 

@@ -9,7 +9,8 @@ namespace tumble {
 namespace {
 
 /// B's surface point nearest to A's centre is the centre + `height` * normal_A.
-Manifold from_centre(const Sphere& a, const Vec3& normal_A, double height, double margin, std::uint32_t feature) {
+Manifold from_centre(const Sphere& a, const Vec3& normal_A, double height, double margin,
+                     std::uint32_t feature) {
   const double separation = height - a.radius;
   return single_point(normal_A, (a.radius + 0.5 * separation) * normal_A, separation, margin, feature);
 }

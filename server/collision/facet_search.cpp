@@ -103,7 +103,8 @@ Facet FacetSearch::face_facet(std::uint32_t i, double separation) const {
 Facet FacetSearch::edge_facet(std::uint32_t edge_a, std::uint32_t edge_b) {
   const EdgeArc a = arc_of_a(edge_a), b = arc_of_b(edge_b);
   const Vec3 across = a.along.cross(b.along);
-  const double length2 = across.squaredNorm(), sin2 = length2 / (a.along.squaredNorm() * b.along.squaredNorm());
+  const double length2 = across.squaredNorm(),
+               sin2 = length2 / (a.along.squaredNorm() * b.along.squaredNorm());
   if (!(sin2 > kParallel)) return {};
   const double sign = across.dot(a.left + a.right) < 0.0 ? -1.0 : 1.0;
   const Vec3 n = across * (sign / std::sqrt(length2));
@@ -142,7 +143,8 @@ double FacetSearch::lead_of(std::uint32_t winner, double preference) const {
 EdgeArc FacetSearch::arc_of_a(std::uint32_t i) const {
   const ConvexHull::Edge& edge = a_.edges[i];
   const Vec3& tail = a_.vertices[edge.tail];
-  return {tail, a_.vertices[edge.head] - tail, a_.faces[edge.left_face].normal, a_.faces[edge.right_face].normal, i};
+  return {tail, a_.vertices[edge.head] - tail, a_.faces[edge.left_face].normal,
+          a_.faces[edge.right_face].normal, i};
 }
 
 EdgeArc FacetSearch::arc_of_b(std::uint32_t i) const {
@@ -164,7 +166,8 @@ std::size_t FacetSearch::gather_a(std::uint32_t& next, double lead, Block& block
       return std::min(arc.left.dot(d), arc.right.dot(d));
     };
     if (overlap(cache_.vertex_B) > depth) continue;
-    cache_.vertex_B = descend(b_, R_.transpose() * (arc.left + arc.right), cache_.vertex_B, -kInfinity).vertex;
+    cache_.vertex_B =
+        descend(b_, R_.transpose() * (arc.left + arc.right), cache_.vertex_B, -kInfinity).vertex;
     if (overlap(cache_.vertex_B) <= depth) block[n++] = arc;
   }
   return n;
@@ -193,7 +196,8 @@ void FacetSearch::cross(const EdgeArc& a, const EdgeArc& b) {
   const double al = a.left.dot(b.along), ar = a.right.dot(b.along);
   if (al * ar >= 0.0) return;
   const Vec3 across = a.along.cross(b.along);
-  const double length2 = across.squaredNorm(), sin2 = length2 / (a.along.squaredNorm() * b.along.squaredNorm());
+  const double length2 = across.squaredNorm(),
+               sin2 = length2 / (a.along.squaredNorm() * b.along.squaredNorm());
   if (!(sin2 > kParallel)) return;
   const double side = across.dot(a.left + a.right);
   if (side * across.dot(b.left + b.right) <= 0.0) return;
@@ -201,7 +205,8 @@ void FacetSearch::cross(const EdgeArc& a, const EdgeArc& b) {
   if (n.dot(b.tail - a.tail) <= best_edges.separation) return;
   // Counted by true supports: arcs that only touch pass the test above by rounding.
   const double separation = separation_along(n);
-  if (separation > best_edges.separation) best_edges = {Facet::Kind::edges, a.index, b.index, separation, n, sin2};
+  if (separation > best_edges.separation)
+    best_edges = {Facet::Kind::edges, a.index, b.index, separation, n, sin2};
 }
 
 void FacetSearch::search_edges(double margin, double lead) {
@@ -222,18 +227,22 @@ void FacetSearch::search_edges(double margin, double lead) {
 
 Facet recall_facet(const PolytopePair& pair, PairCache& cache) {
   const auto kind = static_cast<Facet::Kind>(cache.feature >> 2 * kIndexBits);
-  const std::uint32_t a = cache.feature >> kIndexBits & (kIndexLimit - 1), b = cache.feature & (kIndexLimit - 1);
+  const std::uint32_t a = cache.feature >> kIndexBits & (kIndexLimit - 1),
+                      b = cache.feature & (kIndexLimit - 1);
   FacetSearch search(pair, cache);
   const std::uint32_t faces_a = static_cast<std::uint32_t>(pair.a.faces.size());
-  if (kind == Facet::Kind::face_a && a < faces_a) return search.face_facet(a, search.height_over(a, -kInfinity));
+  if (kind == Facet::Kind::face_a && a < faces_a)
+    return search.face_facet(a, search.height_over(a, -kInfinity));
   if (kind == Facet::Kind::face_b && b < pair.b.faces.size()) {
     return search.face_facet(faces_a + b, search.height_over(faces_a + b, -kInfinity));
   }
-  if (kind == Facet::Kind::edges && a < pair.a.edges.size() && b < pair.b.edges.size()) return search.edge_facet(a, b);
+  if (kind == Facet::Kind::edges && a < pair.a.edges.size() && b < pair.b.edges.size())
+    return search.edge_facet(a, b);
   return {};
 }
 
-FacetAnswer find_facet(const PolytopePair& pair, double margin, const AxisPreference& preference, PairCache& cache) {
+FacetAnswer find_facet(const PolytopePair& pair, double margin, const AxisPreference& preference,
+                       PairCache& cache) {
   FacetAnswer answer;
   const Facet seed = recall_facet(pair, cache);
   const double lead = kLeadSought * std::min(pair.a.radius, pair.b.radius);

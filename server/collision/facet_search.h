@@ -17,8 +17,8 @@ struct PolytopePair {
 struct Facet {
   enum class Kind : std::uint32_t { none, face_a, face_b, edges };
   Kind kind = Kind::none;
-  std::uint32_t a = 0, b = 0;  ///< Face of A or B, or both edges.
-  double separation = 0.0;     ///< [m]
+  std::uint32_t a = 0, b = 0;     ///< Face of A or B, or both edges.
+  double separation = 0.0;        ///< [m]
   Vec3 normal_A = Vec3::UnitZ();  ///< Unit, from A to B.
   double sin2 = 1.0;              ///< Of the angle between the edges.
 };
@@ -32,7 +32,8 @@ struct FacetAnswer {
 /// The facet that separates most (or, if one is beyond the margin, the first such one found). Of nearly equal ones the
 /// winner is chosen by AxisPreference from the pose alone: the facet and vertices remembered in the cache, which are
 /// updated, only save work.
-FacetAnswer find_facet(const PolytopePair& pair, double margin, const AxisPreference& preference, PairCache& cache);
+FacetAnswer find_facet(const PolytopePair& pair, double margin, const AxisPreference& preference,
+                       PairCache& cache);
 
 /// The facet in the cache, evaluated at the pair's pose; kind none if there is none.
 Facet recall_facet(const PolytopePair& pair, PairCache& cache);

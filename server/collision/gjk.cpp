@@ -28,8 +28,12 @@ struct Run {
   int calls = 0;
 };
 
-Vec3 to_vec3(const ccd_vec3_t* v) { return {v->v[0], v->v[1], v->v[2]}; }
-void from_vec3(const Vec3& v, ccd_vec3_t* out) { ccdVec3Set(out, v.x(), v.y(), v.z()); }
+Vec3 to_vec3(const ccd_vec3_t* v) {
+  return {v->v[0], v->v[1], v->v[2]};
+}
+void from_vec3(const Vec3& v, ccd_vec3_t* out) {
+  ccdVec3Set(out, v.x(), v.y(), v.z());
+}
 
 /// True as long as the budget lasts; afterwards the support is the origin, on which every loop of libccd ends.
 bool spend_call(Run& run, ccd_vec3_t* out) {

@@ -98,8 +98,8 @@ class Query {
   bool stays_beyond_by_motion() {
     radius_b_ = bounding_radius(b_);
     if (!options_.use_motion_bound || cache_.gap <= margin_) return false;
-    const double bound = cache_.gap + cache_.axis_A.dot(X_AB_.p - cache_.p_AB) -
-                         turned_by(X_AB_.q, cache_.q_AB) * radius_b_;
+    const double bound =
+        cache_.gap + cache_.axis_A.dot(X_AB_.p - cache_.p_AB) - turned_by(X_AB_.q, cache_.q_AB) * radius_b_;
     return bound > margin_ + kRounding * (X_AB_.p.norm() + radius_b_);
   }
 

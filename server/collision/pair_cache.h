@@ -10,12 +10,12 @@ namespace tumble {
 
 /// Frame A is the frame of the shape that comes first in the pair matrix of narrow_phase.cpp.
 struct PairCache {
-  Vec3 axis_A = Vec3::Zero();    ///< Last separating axis, from A to B, unit; zero: none yet.
-  double gap = 0.0;              ///< Certified lower bound of the distance at the pose below [m]; <= 0: none.
-  double slack = 0.0;            ///< Lead of the winning facet over all others at the pose below [m]; <= 0: none.
-  Vec3 p_AB = Vec3::Zero();      ///< Relative pose that gap and slack belong to.
+  Vec3 axis_A = Vec3::Zero();  ///< Last separating axis, from A to B, unit; zero: none yet.
+  double gap = 0.0;            ///< Certified lower bound of the distance at the pose below [m]; <= 0: none.
+  double slack = 0.0;        ///< Lead of the winning facet over all others at the pose below [m]; <= 0: none.
+  Vec3 p_AB = Vec3::Zero();  ///< Relative pose that gap and slack belong to.
   Quat q_AB = Quat::Identity();
-  std::uint32_t feature = 0;     ///< Facet that won the last exact search; 0: none.
+  std::uint32_t feature = 0;                 ///< Facet that won the last exact search; 0: none.
   std::uint32_t vertex_A = 0, vertex_B = 0;  ///< Start of hill climbing on hulls.
 };
 

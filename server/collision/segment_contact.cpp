@@ -11,8 +11,8 @@ constexpr double kSideBySide = 1e-6;
 
 }  // namespace
 
-Manifold make_segment_manifold(const RoundedSegment& a, const RoundedSegment& b, const Vec3& normal_A, double margin,
-                               double merge, std::uint32_t feature) {
+Manifold make_segment_manifold(const RoundedSegment& a, const RoundedSegment& b, const Vec3& normal_A,
+                               double margin, double merge, std::uint32_t feature) {
   ManifoldBuilder builder(normal_A, margin, merge);
   const auto add = [&](const Vec3& p_a, const Vec3& p_b, std::uint32_t index) {
     const double separation = normal_A.dot(p_b - p_a) - a.radius - b.radius;

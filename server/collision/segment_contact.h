@@ -13,7 +13,7 @@ struct RoundedSegment {
 };
 
 /// normal_A: unit, from A to B. Points closer than `merge` [m] become one.
-Manifold make_segment_manifold(const RoundedSegment& a, const RoundedSegment& b, const Vec3& normal_A, double margin,
-                               double merge, std::uint32_t feature);
+Manifold make_segment_manifold(const RoundedSegment& a, const RoundedSegment& b, const Vec3& normal_A,
+                               double margin, double merge, std::uint32_t feature);
 
 }  // namespace tumble

@@ -143,11 +143,21 @@ struct Support {
 
 }  // namespace
 
-const char* shape_name(const Shape& shape) { return std::visit(Name{}, shape); }
-std::string check_shape(const Shape& shape) { return std::visit(Check{}, shape); }
-Aabb compute_aabb(const Shape& shape, const Pose& X_WS) { return std::visit(Bounds{X_WS}, shape); }
-double bounding_radius(const Shape& shape) { return std::visit(Radius{}, shape); }
-Vec3 support(const Shape& shape, const Vec3& d_S) { return std::visit(Support{d_S}, shape); }
+const char* shape_name(const Shape& shape) {
+  return std::visit(Name{}, shape);
+}
+std::string check_shape(const Shape& shape) {
+  return std::visit(Check{}, shape);
+}
+Aabb compute_aabb(const Shape& shape, const Pose& X_WS) {
+  return std::visit(Bounds{X_WS}, shape);
+}
+double bounding_radius(const Shape& shape) {
+  return std::visit(Radius{}, shape);
+}
+Vec3 support(const Shape& shape, const Vec3& d_S) {
+  return std::visit(Support{d_S}, shape);
+}
 
 double separation_along(const Shape& a, const Shape& b, const Mat3& R_AB, const Vec3& p_AB, const Vec3& n_A) {
   const Vec3 n_B = R_AB.transpose() * n_A;

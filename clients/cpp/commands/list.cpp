@@ -36,9 +36,9 @@ int list(const Globals& globals) {
     print_table(world);
     return kDone;
   }
-  auto bodies = nlohmann::ordered_json::array();
-  for (const auto& [id, body] : world.picture().bodies()) bodies.push_back(to_json(body));
-  fmt::print("{}\n", bodies.dump(2));
+  std::vector<std::string> bodies;  // one a line
+  for (const auto& [id, body] : world.picture().bodies()) bodies.push_back(to_json(body).dump());
+  fmt::print("[\n{}\n]\n", fmt::join(bodies, ",\n"));
   return kDone;
 }
 

@@ -18,7 +18,7 @@ void StepMeter::report(std::int64_t now, double dt, std::int64_t io_busy, stats_
   stats.narrow_phase_ms = stage(Stage::narrow_phase);
   stats.islands_ms = stage(Stage::islands);
   stats.solve_ms = stage(Stage::solve);
-  stats.rest_ms = stage(Stage::rest);
+  stats.report_ms = stage(Stage::report);
   stats.publish_ms = per(publish_, publications_);
   stats.io_ms = per(io_busy - io_busy_, publications_);
   *this = StepMeter();

@@ -124,7 +124,9 @@ TEST_F(Publisher, LateJoinerIsCompleteWithinASecondWhileAllRest) {
   for (int i = 0; i < 61; ++i) {  // 1 s and the frame that ends it
     const auto sent = publish(scenery, late);
     most = std::max(most, sent.at("T_STATE") + (sent.contains("T_CATALOG") ? sent.at("T_CATALOG") : 0));
-    if (i == 30) EXPECT_EQ(late.x.size(), 1000u) << "the refresh comes round in 0.5 s";
+    if (i == 30) {
+      EXPECT_EQ(late.x.size(), 1000u) << "the refresh comes round in 0.5 s";
+    }
   }
   EXPECT_EQ(late.x.size(), 1000u);
   EXPECT_EQ(late.names.size(), 1000u);

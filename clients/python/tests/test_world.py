@@ -116,6 +116,16 @@ def test_states_yields_every_new_step(world: World, server: FakeServer) -> None:
     assert heights == [1.0, 10.0, 20.0, 30.0]
 
 
+def test_pause_waits_for_the_state_at_which_it_stands(world: World, server: FakeServer) -> None:
+    def stop(command: control_t) -> None:
+        server.acknowledge(command)  # applied at step 7
+        server.send("_STATE", make_state({1: 2.0}, step=7, num_bodies=2))
+
+    server.on_command = stop
+    world.pause()
+    assert world.step_count == 7
+
+
 def test_step_waits_for_the_new_state(world: World, server: FakeServer) -> None:
     def advance(command: control_t) -> None:
         server.acknowledge(command)  # applied at step 7

@@ -292,8 +292,10 @@ class World:
         return self[name].remove(wait=wait)
 
     def pause(self) -> Answer:
-        """Stops simulated time."""
-        return self.send(_make_control(control_t.VERB_PAUSE)).result()
+        """Stops simulated time; returns when the state at which it stands has arrived."""
+        answer = self.send(_make_control(control_t.VERB_PAUSE)).result()
+        self.wait_for(lambda: self._picture.step >= answer.step)
+        return answer
 
     def resume(self) -> Answer:
         """Lets simulated time run."""

@@ -47,7 +47,7 @@ std::string greeting(const ServerSettings& settings, const Bus& bus, const World
       "  ./run spy{spy}\n"
       "  ./run tumble{options} list\n"
       "  ./run tumble{options} push {body} --force 0 0 50 --seconds 0.5\n"
-      "  ./run python -c \"from tumble import World; World({python}).push('{body}', force=(0, 0, 50), "
+      "  ./run python -c \"from tumble import World; World({python})['{body}'].push(force=(0, 0, 50), "
       "seconds=0.5)\"\n"
       "Ctrl-C stops the server.",
       fmt::arg("version", kVersion), fmt::arg("scene", settings.scene_name),

@@ -1,52 +1,41 @@
 """A force F for a time T changes the momentum of a free body by F T, whichever client asks for it."""
-import pytest
+import re
 
+import pytest
 from server import run_tumble
+from tumble import World
 from wire import APPLIED
 
 FORCE = (3.0, -4.0, 12.0)  # [N]
 RELATIVE = 1e-12           # measured 2e-15: the round-off of 120 additions
 
 
-def dt(wire):
-    return wire.next("HEARTBEAT").dt
-
-
-def momentum_after(wire, name, step, mass):
-    """m v of the body from the first state after the step."""
-    index = wire.bodies()[name][0]
-    _, velocity, _ = wire.motion(index, condition=lambda m: m.step >= step)
-    return [mass * v for v in velocity]
+def check_momentum(wire, step, seconds):
+    """FORCE acted on the ball from `step` on for `seconds`; afterwards m v is FORCE times them."""
+    index, _, mass = wire.bodies()["ball"]
+    end = step + seconds / wire.next("HEARTBEAT").dt + 2
+    _, velocity, _ = wire.motion(index, condition=lambda m: m.step > end)
+    assert [mass * v for v in velocity] == pytest.approx([f * seconds for f in FORCE], rel=RELATIVE)
 
 
 @pytest.mark.parametrize("seconds", [0.5, 0.1234, 0.0])
 def test_wire(free_bodies, wire, seconds):
-    index, generation, mass = wire.bodies()["ball"]
-    h = dt(wire)
+    index, generation, _ = wire.bodies()["ball"]
     answer = wire.ask(wire.force(body=index, generation=generation, force=FORCE, duration=seconds))
     assert answer.status == APPLIED
-    acting = seconds or h  # 0: exactly one step
-    momentum = momentum_after(wire, "ball", answer.applied_step + acting / h + 2, mass)
-    assert momentum == pytest.approx([f * acting for f in FORCE], rel=RELATIVE)
+    check_momentum(wire, answer.applied_step, seconds or wire.next("HEARTBEAT").dt)  # 0: exactly one step
 
 
 def test_command_line(free_bodies, wire):
-    before = wire.next("STATE").step
     done = run_tumble("push", "ball", "--force", *FORCE, "--seconds", 0.5)
     assert done.returncode == 0, done.stderr
-    mass = wire.bodies()["ball"][2]
-    wire.next("STATE", condition=lambda m: m.step > before + 0.5 / dt(wire))
-    momentum = momentum_after(wire, "ball", wire.next("STATE").step + 0.6 / dt(wire), mass)
-    assert momentum == pytest.approx([f * 0.5 for f in FORCE], rel=RELATIVE)
+    check_momentum(wire, int(re.search(r"\(step (\d+)\)", done.stdout).group(1)), 0.5)
 
 
 def test_python(free_bodies, wire):
-    from tumble import World
-    world = World()
-    world["ball"].push(force=FORCE, seconds=0.5)
-    mass = wire.bodies()["ball"][2]
-    momentum = momentum_after(wire, "ball", wire.next("STATE").step + 0.6 / dt(wire), mass)
-    assert momentum == pytest.approx([f * 0.5 for f in FORCE], rel=RELATIVE)
+    with World() as world:
+        answer = world["ball"].push(force=FORCE, seconds=0.5)
+    check_momentum(wire, answer.step, 0.5)
 
 
 def test_force_at_a_point_turns_by_its_lever_arm(free_bodies, wire):
@@ -57,7 +46,7 @@ def test_force_at_a_point_turns_by_its_lever_arm(free_bodies, wire):
     answer = wire.ask(wire.force(body=index, generation=generation, force=(0.0, 0.0, 12.0), point=(0.5, 1.0, 0.0)))
     assert answer.status == APPLIED
     body = wire.next(f"BODY_{index}", condition=lambda m: m.step > answer.applied_step)
-    h = dt(wire)
+    h = wire.next("HEARTBEAT").dt
     assert list(body.angular_momentum) == pytest.approx([12.0 * h, -6.0 * h, 0.0], rel=RELATIVE, abs=1e-15)
 
 
@@ -68,5 +57,6 @@ def test_torque_for_a_time(free_bodies, wire):
     wire.listen_to_body(index)
     torque = (5.0, -2.0, 3.0)
     answer = wire.ask(wire.force(body=index, generation=generation, torque=torque, duration=0.5))
-    body = wire.next(f"BODY_{index}", condition=lambda m: m.step > answer.applied_step + 0.5 / dt(wire) + 2)
+    end = answer.applied_step + 0.5 / wire.next("HEARTBEAT").dt + 2
+    body = wire.next(f"BODY_{index}", condition=lambda m: m.step > end)
     assert list(body.angular_momentum) == pytest.approx([m * 0.5 for m in torque], rel=RELATIVE)

@@ -12,16 +12,18 @@ struct Rival {
   SolveFunction solve;
 };
 
-constexpr std::array<Rival, 4> kRivals{{
+constexpr std::array<Rival, 6> kRivals{{
     {Solver::course_impulse, "course_impulse", &solve_course_impulse},
     {Solver::pgs, "pgs", &solve_pgs},
     {Solver::nncg, "nncg", &solve_nncg},
     {Solver::soft_step, "soft_step", &solve_soft_step},
+    {Solver::exact, "exact", &solve_exact},
+    {Solver::automatic, "automatic", &solve_automatic},
 }};
 
 const Rival& rival(Solver solver) { return kRivals[static_cast<std::size_t>(solver)]; }
 
-static_assert(kRivals[static_cast<std::size_t>(Solver::soft_step)].solver == Solver::soft_step);
+static_assert(kRivals[static_cast<std::size_t>(Solver::automatic)].solver == Solver::automatic);
 
 }  // namespace
 

@@ -228,7 +228,10 @@ void SoftStep::solve() {
 
 SolverReport solve_soft_step(ContactProblem& problem, const SolverSettings& settings) {
   SoftStep(problem, settings.sub_steps).solve();
-  return {.sweeps = 2 * settings.sub_steps, .residual = compute_residual(problem), .accepted = false};
+  SolverReport report;
+  report.sweeps = 2 * settings.sub_steps;
+  report.residual = compute_residual(problem);
+  return report;
 }
 
 }  // namespace tumble

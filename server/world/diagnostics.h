@@ -15,6 +15,8 @@ struct Counters {
   std::uint64_t bodies_stepped = 0, bodies_skipped_resting = 0;
   std::uint64_t islands_solved = 0, islands_accepted = 0, islands_free = 0;
   std::uint64_t sweeps = 0;
+  std::uint64_t solver_iterations = 0;     ///< Factorizations of the exact solver.
+  std::uint64_t solver_fallbacks = 0;      ///< Islands without a trustworthy exact solution.
   std::uint64_t impacts = 0, impacts_capped = 0;
   std::uint64_t rests = 0, wakes = 0;
   std::uint64_t non_finite_contained = 0;  ///< Bodies held at their last good state.

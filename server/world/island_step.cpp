@@ -49,6 +49,8 @@ void World::advance_connected(std::size_t island, const StepContext& step) {
   counters_.impacts += impacts.impacts;
   counters_.impacts_capped += impacts.capped;
   counters_.sweeps += static_cast<std::uint64_t>(solved.sweeps);
+  counters_.solver_iterations += static_cast<std::uint64_t>(solved.iterations);
+  counters_.solver_fallbacks += solved.fallback ? 1 : 0;
   ++(solved.accepted ? counters_.islands_accepted : counters_.islands_solved);
   step_residual_ = std::max(step_residual_, solved.residual);
   store_impulses();

@@ -49,6 +49,7 @@ std::string check_options(const Options& options) {
       {"max impacts", static_cast<double>(options.max_impacts), 1.0, 1e6},
       {"max sweeps", static_cast<double>(options.solver_settings.max_sweeps), 1.0, 1e6},
       {"tolerance", options.solver_settings.tolerance, 0.0, 1.0},
+      {"exact bodies", static_cast<double>(options.solver_settings.exact_bodies), 0.0, 1e6},
       {"sub steps", static_cast<double>(options.solver_settings.sub_steps), 1.0, 1000.0},
       {"rest residual", options.rest.residual, 0.0, 1.0},
       {"rest speed", options.rest.speed, 0.0, 1.0},

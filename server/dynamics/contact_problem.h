@@ -14,12 +14,12 @@ namespace tumble {
 
 /// One body as the solvers see it. Immovable bodies have inv_mass = 0 and inv_I_W = 0: impulses leave them unchanged.
 struct SolverBody {
-  Vec3 v, w;               ///< In: after external forces (v*, w*). Out: at the end of the step.
-  Vec3 v0, w0;             ///< At the start of the step (after impacts), before forces.
-  double inv_mass;
-  Mat3 inv_I_W;
-  Vec3 x;                  ///< Centre of mass at the start of the step [m].
-  Quat q;
+  Vec3 v = Vec3::Zero(), w = Vec3::Zero();    ///< In: after external forces (v*, w*). Out: at the end of the step.
+  Vec3 v0 = Vec3::Zero(), w0 = Vec3::Zero();  ///< At the start of the step (after impacts), before forces.
+  double inv_mass = 0.0;
+  Mat3 inv_I_W = Mat3::Zero();
+  Vec3 x = Vec3::Zero();                      ///< Centre of mass at the start of the step [m].
+  Quat q = Quat::Identity();
   Vec3 shift = Vec3::Zero();  ///< Out: extra displacement beyond the drift [m] (positional correction, sub-steps).
   Vec3 turn = Vec3::Zero();   ///< Out: extra rotation vector [rad], world axes, applied after the drift.
 };

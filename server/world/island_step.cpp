@@ -88,10 +88,6 @@ std::uint32_t World::problem_body(std::uint32_t slot, double h) {
   const auto index = static_cast<std::uint32_t>(scratch_.problem.bodies.size());
   SolverBody& body = scratch_.problem.bodies.emplace_back();
   scratch_.problem_slot.push_back(slot);
-  body.v0 = body.w0 = body.v = body.w = body.x = Vec3::Zero();
-  body.q = Quat::Identity();
-  body.inv_mass = 0.0;
-  body.inv_I_W.setZero();
   if (slot == kWorld) return index;
   scratch_.local[slot] = index;
   const Motion& motion = motions_[slot];

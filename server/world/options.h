@@ -17,7 +17,7 @@ struct Options {
   double time_step = 1.0 / 240.0;  ///< [s], 1e-6..0.1. Smaller: better contacts, proportionally slower.
   Vec3 gravity = Vec3(0.0, 0.0, -9.81);  ///< [m/s^2]
   Integrator integrator = Integrator::taylor8;
-  Solver solver = Solver::pgs;
+  Solver solver = Solver::automatic;
 
   // Collision
   double contact_margin = 0.02;    ///< [m] contacts start at this gap. Smaller: fewer rows, later warm start.

@@ -78,7 +78,9 @@ TEST(Sdf, Shapes) {
                          "<tumble:convex_hull><tumble:points>0 0 0 1 0 0 0 1 0 0 0 1</tumble:points>"
                          "</tumble:convex_hull>")
                          .shape;
-  EXPECT_EQ(std::get<HullPointer>(hull)->vertices.size(), 4u);
+  const HullPointer* pointer = std::get_if<HullPointer>(&hull);
+  ASSERT_TRUE(pointer && *pointer);
+  EXPECT_EQ((*pointer)->vertices.size(), 4u);
 }
 
 TEST(Sdf, MeshesBecomeScaledHulls) {

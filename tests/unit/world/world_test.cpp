@@ -192,10 +192,10 @@ TEST(World, ACopyIsASnapshotThatGoesOnWithTheSameBits) {
 TEST(World, ABodyThatWouldBecomeNonFiniteIsHeldAndReportedAndTheRestGoesOn) {
   World world(weightless());
   BodyDefinition speck = body("speck", Sphere{1e-6}, Vec3(0, 0, 1));
-  speck.inertia = Inertia{1e-30, Vec3::Zero(), Vec3(1e-40, 2e-40, 2.5e-40).asDiagonal()};
+  speck.inertia = Inertia{1e-300, Vec3::Zero(), Vec3(1e-300, 2e-300, 2.5e-300).asDiagonal()};
   const BodyId doomed = world.create_body(speck);
   const BodyId other = world.create_body(body_of_mass("other", Sphere{0.5}, 1.0, Vec3(10, 0, 0)));
-  world.push({.body = doomed, .torque = Vec3(5e14, 5e14, 0), .duration = 1.0});
+  world.push({.body = doomed, .force = Vec3(5e14, 0, 0), .duration = 1.0});
   world.push({.body = other, .force = Vec3(1, 0, 0), .duration = 1.0});
   run(world, 5);
   EXPECT_GT(world.counters().non_finite_contained, 0u);

@@ -88,13 +88,18 @@ Outcome find_body(const World& world, std::int32_t index, std::int32_t generatio
   if (index < 0 || slot >= world.body_capacity()) {
     return {.status = Status::unknown_body, .detail = fmt::format("no body has the index {}", index)};
   }
-  const std::int64_t current = world.body(slot).generation;
-  if (!world.is_valid({slot, static_cast<std::uint32_t>(generation)})) {
-    if (!world.body(slot).exists && generation > current) {
-      return {.status = Status::unknown_body, .detail = fmt::format("no body has the index {}", index)};
-    }
+  const Body& body = world.body(slot);
+  const std::int64_t current = body.generation;
+  if (!body.exists && generation > current) {
+    return {.status = Status::unknown_body, .detail = fmt::format("no body has the index {}", index)};
+  }
+  if (generation != current) {
     return {.status = Status::stale_generation,
             .detail = fmt::format("body {} has generation {}, not {}", index, current, generation)};
+  }
+  if (!body.exists) {
+    return {.status = Status::stale_generation,
+            .detail = fmt::format("body {} of generation {} was removed", index, generation)};
   }
   return {.step = static_cast<std::int64_t>(world.step_count()), .body = index, .generation = generation};
 }

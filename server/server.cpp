@@ -293,7 +293,6 @@ void Server::send_stats() {
   meter_.report(clock_.now_ns(), world_.options().time_step, sent.busy_ns, message);
   message.overruns = pacer_.overruns();
   message.steps_skipped = pacer_.steps_skipped();
-  message.receive_drops = static_cast<std::int64_t>(bus_.receive_drops());
   fill_world_stats(world_, start_sums_, message);
   fill_network_stats(inbox_.counters(), sent, message);
   post(channel_name(settings_.world_name, kStatsSuffix), message);

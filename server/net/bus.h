@@ -42,7 +42,6 @@ class Bus {
   int receive(int budget);
 
   std::size_t payload_limit() const { return payload_limit_; }  ///< [bytes] for everything the server sends
-  std::uint64_t receive_drops() const { return socket_ ? socket_->kernel_drops() : 0; }
   const BusAddress& address() const { return address_; }
   const std::string& interface() const { return interface_; }  ///< Of the multicast route; empty if unknown.
 

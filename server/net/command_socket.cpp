@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <cstring>
 #include <optional>
 #include <system_error>
 
@@ -80,7 +79,6 @@ void join(int socket, const BusAddress& address) {
   const int yes = 1;
   set_option(socket, SOL_SOCKET, SO_REUSEADDR, yes);
   set_option(socket, SOL_SOCKET, SO_REUSEPORT, yes);
-  set_option(socket, SOL_SOCKET, SO_RXQ_OVFL, yes);
   set_option(socket, SOL_SOCKET, SO_RCVBUF, std::max(address.receive_buffer, kReceiveBuffer));
   sockaddr_in group{};
   group.sin_family = AF_INET;
@@ -117,7 +115,6 @@ CommandSocket::~CommandSocket() {
 int CommandSocket::receive(int budget, const Handler& handler) {
   std::array<mmsghdr, kBatch> headers;
   std::array<iovec, kBatch> slices;
-  std::array<std::array<std::uint8_t, CMSG_SPACE(sizeof(std::uint32_t))>, kBatch> controls;
   int total = 0;
   while (total < budget) {
     const int wanted = std::min(kBatch, budget - total);
@@ -126,20 +123,11 @@ int CommandSocket::receive(int budget, const Handler& handler) {
       headers[i] = {};
       headers[i].msg_hdr.msg_iov = &slices[i];
       headers[i].msg_hdr.msg_iovlen = 1;
-      headers[i].msg_hdr.msg_control = controls[i].data();
-      headers[i].msg_hdr.msg_controllen = controls[i].size();
     }
     const int count =
         ::recvmmsg(socket_, headers.data(), static_cast<unsigned>(wanted), MSG_DONTWAIT, nullptr);
     if (count <= 0) break;
     for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
-      msghdr& header = headers[i].msg_hdr;
-      for (cmsghdr* note = CMSG_FIRSTHDR(&header); note != nullptr; note = CMSG_NXTHDR(&header, note)) {
-        if (note->cmsg_level != SOL_SOCKET || note->cmsg_type != SO_RXQ_OVFL) continue;
-        std::uint32_t drops = 0;  // since the socket was opened
-        std::memcpy(&drops, CMSG_DATA(note), sizeof drops);
-        kernel_drops_ = drops;
-      }
       const std::string_view bytes(reinterpret_cast<const char*>(slices[i].iov_base), headers[i].msg_len);
       if (const auto message = parse_message(bytes)) {
         handler(message->channel,

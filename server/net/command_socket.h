@@ -29,11 +29,9 @@ class CommandSocket {
   /// Hands every waiting message, at most `budget` datagrams, to `handler`; returns how many datagrams were read.
   int receive(int budget, const Handler& handler);
   int fd() const { return socket_; }
-  std::uint64_t kernel_drops() const { return kernel_drops_; }  ///< The receive buffer was full.
 
  private:
   int socket_ = -1;
-  std::uint64_t kernel_drops_ = 0;
   std::vector<std::uint8_t> buffers_;
 };
 

@@ -72,6 +72,7 @@ TEST(Standard, TheForceCommandIsWhatTheCodeSends) {
   command.client = 1001;
   command.sequence = 1;
   command.body = 1;
+  command.generation = 1;
   command.force[2] = 50.0;
   command.duration = 0.5;
   Buffer message;
@@ -92,7 +93,7 @@ TEST(Standard, TheAnswerIsWhatTheCodeSends) {
   answer.status = {0};
   answer.applied_step = {480};
   answer.body = {1};
-  answer.generation = {0};
+  answer.generation = {1};
   answer.detail = {""};
   Buffer message;
   encode(answer, message);

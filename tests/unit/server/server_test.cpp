@@ -94,6 +94,7 @@ class TumbleServer : public testing::Test {
     force_command_t c{};
     c.client = 1;
     c.sequence = ++sequence_;
+    c.generation = 1;
     c.force[0] = fx;
     c.duration = duration;
     return c;
@@ -103,6 +104,7 @@ class TumbleServer : public testing::Test {
     c.client = 1;
     c.sequence = ++sequence_;
     c.verb = verb;
+    c.generation = 1;
     c.orientation[0] = 1.0;
     return c;
   }
@@ -177,7 +179,7 @@ TEST_F(TumbleServer, RefusesWhatTheWorldDoesNotHave) {
   push.body = -1;
   EXPECT_EQ(ask(push).status, Status::unknown_body);
   push = make_force(1.0, 0.0);
-  push.generation = 1;
+  push.generation = 2;
   const Outcome stale = ask(push);
   EXPECT_EQ(stale.status, Status::stale_generation);
   EXPECT_FALSE(stale.detail.empty());

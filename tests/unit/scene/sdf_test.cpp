@@ -74,11 +74,9 @@ TEST(Sdf, Shapes) {
   const Shape capsule = read_geometry("<capsule><radius>0.1</radius><length>3</length></capsule>").shape;
   EXPECT_EQ(std::get<Capsule>(capsule).radius, 0.1);
   EXPECT_EQ(std::get<Capsule>(capsule).half_length, 1.5);
-  const Shape hull = read_geometry(
-                         "<tumble:convex_hull><tumble:points>0 0 0 1 0 0 0 1 0 0 0 1</tumble:points>"
-                         "</tumble:convex_hull>")
-                         .shape;
-  const HullPointer* pointer = std::get_if<HullPointer>(&hull);
+  const GeometryDefinition tetrahedron = read_geometry(
+      "<tumble:convex_hull><tumble:points>0 0 0 1 0 0 0 1 0 0 0 1</tumble:points></tumble:convex_hull>");
+  const HullPointer* pointer = std::get_if<HullPointer>(&tetrahedron.shape);
   ASSERT_TRUE(pointer && *pointer);
   EXPECT_EQ((*pointer)->vertices.size(), 4u);
 }

@@ -48,6 +48,7 @@ def test_log_plays_back_whole(start, tmp_path):
         time.sleep(2.0)
         run_tumble("push", "ball", "--force", 0, 0, 5, "--seconds", 0.1)
         assert server.stop() == 0
+        time.sleep(0.5)  # what lcm-logger has received but not yet written is lost when it is told to stop
         logger.send_signal(signal.SIGINT)
     logged = [event.channel for event in lcm.EventLog(str(log)) if event.channel.startswith("TUMBLE_")]
     for channel in ("STATE", "STATS", "CATALOG", "HEARTBEAT", "FORCE", "ACK"):

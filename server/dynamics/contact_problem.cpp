@@ -49,9 +49,10 @@ double contact_residual(const ContactProblem& problem, const PointContact& c) {
 double row_residual(const ContactProblem& problem, const ScalarRow& row) {
   if (row.mass == 0.0) return 0.0;
   const double u = row.n.dot(relative_velocity(problem.bodies[row.a], problem.bodies[row.b], row.rA, row.rB));
-  const double r = row.is_soft()
-                       ? std::abs(row.lambda + row.softness * (u + row.bias)) / (row.mass + row.softness)
-                       : std::abs(std::max(row.lower, row.lambda - row.mass * (u - row.bound)) - row.lambda) / row.mass;
+  const double r =
+      row.is_soft()
+          ? std::abs(row.lambda + row.softness * (u + row.bias)) / (row.mass + row.softness)
+          : std::abs(std::max(row.lower, row.lambda - row.mass * (u - row.bound)) - row.lambda) / row.mass;
   return r + 0.0 * (u + row.lambda);
 }
 

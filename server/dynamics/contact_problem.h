@@ -14,25 +14,27 @@ namespace tumble {
 
 /// One body as the solvers see it. Immovable bodies have inv_mass = 0 and inv_I_W = 0: impulses leave them unchanged.
 struct SolverBody {
-  Vec3 v = Vec3::Zero(), w = Vec3::Zero();    ///< In: after external forces (v*, w*). Out: at the end of the step.
-  Vec3 v0 = Vec3::Zero(), w0 = Vec3::Zero();  ///< At the start of the step (after impacts), before forces.
+  /// In: after external forces (v*, w*). Out: at the end of the step.
+  Vec3 v = Vec3::Zero(), w = Vec3::Zero();
+  /// At the start of the step (after impacts), before forces.
+  Vec3 v0 = Vec3::Zero(), w0 = Vec3::Zero();
   double inv_mass = 0.0;
   Mat3 inv_I_W = Mat3::Zero();
-  Vec3 x = Vec3::Zero();                      ///< Centre of mass at the start of the step [m].
+  Vec3 x = Vec3::Zero();  ///< Centre of mass at the start of the step [m].
   Quat q = Quat::Identity();
-  Vec3 shift = Vec3::Zero();  ///< Out: extra displacement beyond the drift [m] (positional correction, sub-steps).
+  Vec3 shift = Vec3::Zero();  ///< Out: extra displacement beyond the drift [m] (overlap resolved, sub-steps).
   Vec3 turn = Vec3::Zero();   ///< Out: extra rotation vector [rad], world axes, applied after the drift.
 };
 
 struct PointContact {
-  std::uint32_t a, b;      ///< Indices into `bodies`.
-  Vec3 n, t1, t2;          ///< Right-handed: t2 = n x t1.
-  Vec3 rA, rB;             ///< Contact point (middle of the gap) from each centre of mass [m].
-  double separation;       ///< Gap at the start of the step [m]; < 0 overlap.
+  std::uint32_t a, b;  ///< Indices into `bodies`.
+  Vec3 n, t1, t2;      ///< Right-handed: t2 = n x t1.
+  Vec3 rA, rB;         ///< Contact point (middle of the gap) from each centre of mass [m].
+  double separation;   ///< Gap at the start of the step [m]; < 0 overlap.
   double friction, restitution;
   Vec3 lambda = Vec3::Zero();  ///< (n, t1, t2) [N s]. In: warm start. Out: the solution.
-  double un0 = 0.0;        ///< Normal velocity at the start of the step [m/s], < 0 closing; set by `prepare`.
-  double bound = 0.0;      ///< b_i [m/s]; set by `prepare`.
+  double un0 = 0.0;    ///< Normal velocity at the start of the step [m/s], < 0 closing; set by `prepare`.
+  double bound = 0.0;  ///< b_i [m/s]; set by `prepare`.
   double mass_n = 0.0, mass_t = 0.0;  ///< 1/k_nn and 1/lambda_max(K_tt) [kg]; set by `prepare`.
 };
 
@@ -44,8 +46,9 @@ struct ScalarRow {
   std::uint32_t a, b;
   Vec3 n, rA, rB;
   double softness = std::numeric_limits<double>::infinity();  ///< [kg]
-  double bias = 0.0;       ///< [m/s]
-  double stiffness = 0.0;  ///< k [N/m], soft rows: with damping and extension it can be softened for a shorter step.
+  double bias = 0.0;                                          ///< [m/s]
+  double stiffness =
+      0.0;  ///< k [N/m], soft rows: with damping and extension it can be softened for a shorter step.
   double damping = 0.0;    ///< c [N s/m], soft rows.
   double extension = 0.0;  ///< [m] at the start of the step, soft rows.
   double gap = 0.0;        ///< [m] way left against n before the row is taut, rigid rows; < 0 over-long.
@@ -62,11 +65,11 @@ struct ContactProblem {
   /// contact closes.
   enum class Drift { average, end };
 
-  double h = 0.0;                     ///< Step [s].
+  double h = 0.0;  ///< Step [s].
   std::vector<SolverBody> bodies;
   std::vector<PointContact> contacts;
   std::vector<ScalarRow> rows;
-  Drift drift = Drift::end;           ///< Out.
+  Drift drift = Drift::end;  ///< Out.
 
   void clear() {
     bodies.clear();

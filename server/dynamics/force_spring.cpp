@@ -18,13 +18,16 @@ double spring_tension(const Spring& spring, double length, double length_rate) {
 
 void soften_row(ScalarRow& row, double h, double extension, double start_speed, ContactProblem::Drift drift) {
   const bool midpoint = drift == ContactProblem::Drift::average;
-  const double before = midpoint ? 0.25 : 0.0, after = 0.5 - before;  // weights of h u0 and h u in the extension
+  const double before = midpoint ? 0.25 : 0.0,
+               after = 0.5 - before;  // weights of h u0 and h u in the extension
   row.softness = h * (after * h * row.stiffness + 0.5 * row.damping);
-  const double known = h * row.stiffness * (extension + before * h * start_speed) + 0.5 * h * row.damping * start_speed;
+  const double known =
+      h * row.stiffness * (extension + before * h * start_speed) + 0.5 * h * row.damping * start_speed;
   row.bias = known / row.softness;
 }
 
-bool make_spring_row(const Spring& spring, const SolverBody& A, const SolverBody& B, double h, ScalarRow& row) {
+bool make_spring_row(const Spring& spring, const SolverBody& A, const SolverBody& B, double h,
+                     ScalarRow& row) {
   if (spring.stiffness == 0.0 && spring.damping == 0.0) return false;
   const Vec3 start = B.x + row.rB - A.x - row.rA;
   const Vec3 rate = relative_start_velocity(A, B, row.rA, row.rB) + relative_velocity(A, B, row.rA, row.rB);

@@ -19,7 +19,8 @@ double spring_tension(const Spring& spring, double length, double length_rate);
 /// tension k (C + h (u0 + u)/4) + c (u0 + u)/2 with C the extension at the start. False (no row)
 /// if the anchors coincide, where the direction is undefined, or if it has neither stiffness nor damping. Velocities of A
 /// and B: v0 at the start, v after forces; direction and arms become those predicted for the middle of the step.
-bool make_spring_row(const Spring& spring, const SolverBody& A, const SolverBody& B, double h, ScalarRow& row);
+bool make_spring_row(const Spring& spring, const SolverBody& A, const SolverBody& B, double h,
+                     ScalarRow& row);
 
 /// Sets softness and bias of a spring's row for a (sub-)step h from its extension [m] and rate [m/s] at its start, for
 /// bodies that then move with the average velocity (implicit midpoint), or with the end velocity: force of the extension

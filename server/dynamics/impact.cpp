@@ -84,8 +84,9 @@ ImpactReport resolve_impacts(ContactProblem& problem, const ImpactSettings& sett
   std::vector<Candidate> candidates = find_candidates(problem, settings.threshold_speed);
   const std::uint64_t limit = static_cast<std::uint64_t>(settings.max_impacts) * problem.contacts.size();
   while (true) {
-    const auto hardest = std::max_element(candidates.begin(), candidates.end(),
-                                          [](const Candidate& a, const Candidate& b) { return a.closing < b.closing; });
+    const auto hardest =
+        std::max_element(candidates.begin(), candidates.end(),
+                         [](const Candidate& a, const Candidate& b) { return a.closing < b.closing; });
     if (hardest == candidates.end() || hardest->closing == 0.0) break;
     if (report.impacts == limit) {
       report.capped = true;
@@ -109,7 +110,8 @@ ImpactReport resolve_impacts(ContactProblem& problem, const ImpactSettings& sett
   return report;
 }
 
-UnitImpulse unit_impulse(const SolverBody& A, const SolverBody& B, const Vec3& n, const Vec3& rA, const Vec3& rB) {
+UnitImpulse unit_impulse(const SolverBody& A, const SolverBody& B, const Vec3& n, const Vec3& rA,
+                         const Vec3& rB) {
   UnitImpulse unit;
   unit.dv_A = -A.inv_mass * n;
   unit.dw_A = -(A.inv_I_W * rA.cross(n));
@@ -119,6 +121,8 @@ UnitImpulse unit_impulse(const SolverBody& A, const SolverBody& B, const Vec3& n
   return unit;
 }
 
-double impulse_fraction(double u_n, double restitution, double ds) { return -(1.0 + restitution) * u_n / ds; }
+double impulse_fraction(double u_n, double restitution, double ds) {
+  return -(1.0 + restitution) * u_n / ds;
+}
 
 }  // namespace tumble

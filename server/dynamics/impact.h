@@ -29,7 +29,8 @@ struct UnitImpulse {
   Vec3 dv_A, dw_A, dv_B, dw_B;  ///< Velocity changes of both bodies for the unit impulse (-n on a, +n on b).
   double ds;                    ///< Change of u_n for the unit impulse [1/kg], > 0.
 };
-UnitImpulse unit_impulse(const SolverBody& A, const SolverBody& B, const Vec3& n, const Vec3& rA, const Vec3& rB);
+UnitImpulse unit_impulse(const SolverBody& A, const SolverBody& B, const Vec3& n, const Vec3& rA,
+                         const Vec3& rB);
 /// f [N s] with u_n + f ds = -restitution u_n.
 double impulse_fraction(double u_n, double restitution, double ds);
 

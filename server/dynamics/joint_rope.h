@@ -11,10 +11,12 @@ struct Rope {
   double restitution = 0.0;  ///< 0..1: share of the stretching speed that it gives back when it snaps taut.
 };
 
-/// The row over a step h: u >= -(length - distance)/h in the direction that brings the anchors together, pushed at most
-/// by `settings` when over-long. False (no row) if it cannot become taut within the step at the velocities of A and B,
+/// The row between the anchors row.rA, row.rB [m from the centres of mass, in W, at the start of the step] over a step h,
+/// in the direction that brings the anchors together; direction and arms become those predicted for the middle of the
+/// step. Way left: gap = (length^2 - distance^2) / (2 |middle|). Swinging taut: (u0 + u)/2 >= -gap/h; snapping taut:
+/// u >= -gap/h, or C_r times the stretching speed. Over-long: taken back at most as `settings` say. False (no row) if it cannot become taut within the step at the velocities of A and B,
 /// or the anchors coincide.
-bool make_rope_row(const Rope& rope, const SolverBody& A, const SolverBody& B, double h, const BoundSettings& settings,
-                   ScalarRow& row);
+bool make_rope_row(const Rope& rope, const SolverBody& A, const SolverBody& B, double h,
+                   const BoundSettings& settings, ScalarRow& row);
 
 }  // namespace tumble

@@ -13,11 +13,14 @@ namespace {
 using Vec2 = Eigen::Vector2d;
 using Mat2 = Eigen::Matrix2d;
 
-double energy_change(const Mat3& K, const Vec3& u, const Vec3& p) { return p.dot(u) + 0.5 * p.dot(K * p); }
+double energy_change(const Mat3& K, const Vec3& u, const Vec3& p) {
+  return p.dot(u) + 0.5 * p.dot(K * p);
+}
 
 /// p_t for a given p_n >= 0.
 Vec2 friction_of(const Mat3& K, const Vec3& u, double friction, double p_n) {
-  return solve_friction_disc(K.bottomRightCorner<2, 2>(), u.tail<2>() + K.block<2, 1>(1, 0) * p_n, friction * p_n);
+  return solve_friction_disc(K.bottomRightCorner<2, 2>(), u.tail<2>() + K.block<2, 1>(1, 0) * p_n,
+                             friction * p_n);
 }
 
 }  // namespace

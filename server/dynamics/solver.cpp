@@ -21,15 +21,21 @@ constexpr std::array<Rival, 6> kRivals{{
     {Solver::automatic, "automatic", &solve_automatic},
 }};
 
-const Rival& rival(Solver solver) { return kRivals[static_cast<std::size_t>(solver)]; }
+const Rival& rival(Solver solver) {
+  return kRivals[static_cast<std::size_t>(solver)];
+}
 
 static_assert(kRivals[static_cast<std::size_t>(Solver::automatic)].solver == Solver::automatic);
 
 }  // namespace
 
-SolveFunction solve_function(Solver solver) { return rival(solver).solve; }
+SolveFunction solve_function(Solver solver) {
+  return rival(solver).solve;
+}
 
-const char* solver_name(Solver solver) { return rival(solver).name; }
+const char* solver_name(Solver solver) {
+  return rival(solver).name;
+}
 
 std::optional<Solver> solver_from_name(std::string_view name) {
   for (const Rival& r : kRivals) {

@@ -51,8 +51,9 @@ double resolve_row(ContactProblem& problem, ScalarRow& row) {
   SolverBody &A = problem.bodies[row.a], &B = problem.bodies[row.b];
   const double u = row.n.dot(relative_velocity(A, B, row.rA, row.rB));
   const UnitImpulse unit = unit_impulse(A, B, row.n, row.rA, row.rB);
-  const double f = row.is_soft() ? -(row.lambda + row.softness * (u + row.bias)) / (1.0 + row.softness * unit.ds)
-                                 : std::max(0.0, (row.bound - u) / unit.ds);
+  const double f = row.is_soft()
+                       ? -(row.lambda + row.softness * (u + row.bias)) / (1.0 + row.softness * unit.ds)
+                       : std::max(0.0, (row.bound - u) / unit.ds);
   apply(A, B, unit, f);
   row.lambda += f;
   return std::abs(f) * unit.ds;

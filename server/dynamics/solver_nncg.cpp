@@ -44,9 +44,8 @@ class ConjugateDirection {
     double beta = previous_square_ > 0.0 ? square / previous_square_ : 0.0;
     if (beta > 1.0) beta = 0.0;  // the change grew: start again from steepest descent
     previous_square_ = square;
-    for_each_impulse(sweep, [&](double& l, std::size_t i) {
-      step(beta, before.impulses[i], direction_.impulses[i], l);
-    });
+    for_each_impulse(
+        sweep, [&](double& l, std::size_t i) { step(beta, before.impulses[i], direction_.impulses[i], l); });
     for (std::size_t b = 0; b < sweep.bodies.size(); ++b) {
       step(beta, before.bodies[b].v.e, direction_.bodies[b].v.e, sweep.bodies[b].v.e);
       step(beta, before.bodies[b].w.e, direction_.bodies[b].w.e, sweep.bodies[b].w.e);

@@ -78,8 +78,8 @@ class SoftStep {
 };
 
 bool only_springs(const ContactProblem& problem) {
-  return problem.contacts.empty() &&
-         std::all_of(problem.rows.begin(), problem.rows.end(), [](const ScalarRow& row) { return row.is_soft(); });
+  return problem.contacts.empty() && std::all_of(problem.rows.begin(), problem.rows.end(),
+                                                 [](const ScalarRow& row) { return row.is_soft(); });
 }
 
 SoftStep::SoftStep(ContactProblem& problem, int sub_steps)
@@ -130,7 +130,8 @@ void SoftStep::soften_rows() {
     if (given.mass == 0.0) continue;
     if (given.is_soft()) {
       ScalarRow row = given;
-      soften_row(row, h_, given.extension + path->moved, swept->n.velocity(start_[swept->a], start_[swept->b]), drift_);
+      soften_row(row, h_, given.extension + path->moved,
+                 swept->n.velocity(start_[swept->a], start_[swept->b]), drift_);
       swept->softness = row.softness;
       swept->bias = row.bias;
     } else if (given.bound <= 0.0) {
@@ -157,7 +158,8 @@ void SoftStep::sweep(bool push) {
     } else if (push) {
       const bool fixed = c.inv_mass_A == 0.0 || c.inv_mass_B == 0.0;
       const Softness& soft = fixed ? soft_.against_fixed : soft_.between;
-      rule = {.push = std::max(soft.scale * soft.rate * s, -kPushSpeed), .scale = soft.scale, .give = soft.give};
+      rule = {
+          .push = std::max(soft.scale * soft.rate * s, -kPushSpeed), .scale = soft.scale, .give = soft.give};
     }
     SweptBody &A = sweep_.bodies[c.a], &B = sweep_.bodies[c.b];
     visit_contact(c, rule, A, B);

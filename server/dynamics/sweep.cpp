@@ -4,7 +4,8 @@
 namespace tumble {
 namespace {
 
-SweptDirection make_direction(const SolverBody& A, const SolverBody& B, const Vec3& d, const Vec3& rA, const Vec3& rB) {
+SweptDirection make_direction(const SolverBody& A, const SolverBody& B, const Vec3& d, const Vec3& rA,
+                              const Vec3& rB) {
   const Vec3 jA = rA.cross(d), jB = rB.cross(d);
   return {Lanes(d), Lanes(jA), Lanes(jB), Lanes(A.inv_I_W * jA), Lanes(B.inv_I_W * jB)};
 }
@@ -32,7 +33,8 @@ SweptContact make_contact(const ContactProblem& problem, const PointContact& c) 
   s.l_1 = c.lambda.y();
   s.l_2 = c.lambda.z();
   const double inv_mass = A.inv_mass + B.inv_mass;
-  const double k11 = inv_mass + answer(s.t1, s.t1), k22 = inv_mass + answer(s.t2, s.t2), k12 = answer(s.t1, s.t2);
+  const double k11 = inv_mass + answer(s.t1, s.t1), k22 = inv_mass + answer(s.t2, s.t2),
+               k12 = answer(s.t1, s.t2);
   s.k_n = 1.0 / c.mass_n;
   s.k_t = 1.0 / c.mass_t;
   s.k_1n = answer(s.t1, s.n);
@@ -59,8 +61,8 @@ Sweep make_sweep(const ContactProblem& problem) {
   for (const ScalarRow& row : problem.rows) {
     if (row.mass == 0.0) continue;
     const SolverBody &A = problem.bodies[row.a], &B = problem.bodies[row.b];
-    sweep.rows.push_back({row.a, row.b, A.inv_mass, B.inv_mass, make_direction(A, B, row.n, row.rA, row.rB), row.mass,
-                          row.softness, row.bias, row.bound, row.lower, row.lambda, row.is_soft()});
+    sweep.rows.push_back({row.a, row.b, A.inv_mass, B.inv_mass, make_direction(A, B, row.n, row.rA, row.rB),
+                          row.mass, row.softness, row.bias, row.bound, row.lower, row.lambda, row.is_soft()});
   }
   return sweep;
 }

@@ -82,7 +82,7 @@ double sweep_once(Sweep& sweep, SweepOrder order);
 
 /// How the normal condition is softened: l <- max(0, l - m (scale u + push) - give l).
 struct NormalRule {
-  double push;         ///< [m/s]; rigid: -bound
+  double push;  ///< [m/s]; rigid: -bound
   double scale = 1.0;
   double give = 0.0;
 };

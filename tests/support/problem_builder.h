@@ -15,11 +15,7 @@ inline const Vec3 kGravity(0.0, 0.0, -9.81);
 
 inline SolverBody fixed_body(const Vec3& x = Vec3::Zero()) {
   SolverBody body;
-  body.v = body.w = body.v0 = body.w0 = Vec3::Zero();
-  body.inv_mass = 0.0;
-  body.inv_I_W = Mat3::Zero();
   body.x = x;
-  body.q = Quat::Identity();
   return body;
 }
 
@@ -35,7 +31,8 @@ inline SolverBody moving_body(double mass, const Vec3& I, const Vec3& x, const V
 }
 
 /// A cube of edge 1 m.
-inline SolverBody cube(double mass, const Vec3& x, const Vec3& v = Vec3::Zero(), const Vec3& w = Vec3::Zero()) {
+inline SolverBody cube(double mass, const Vec3& x, const Vec3& v = Vec3::Zero(),
+                       const Vec3& w = Vec3::Zero()) {
   return moving_body(mass, Vec3::Constant(mass / 6.0), x, v, w);
 }
 
@@ -52,8 +49,9 @@ inline void apply_gravity(ContactProblem& problem, const Vec3& g = kGravity) {
 }
 
 /// Contact at `point` (middle of the gap, W), n from a to b.
-inline PointContact contact_at(const ContactProblem& problem, std::uint32_t a, std::uint32_t b, const Vec3& point,
-                               const Vec3& n, double gap, double friction, double restitution = 0.0) {
+inline PointContact contact_at(const ContactProblem& problem, std::uint32_t a, std::uint32_t b,
+                               const Vec3& point, const Vec3& n, double gap, double friction,
+                               double restitution = 0.0) {
   PointContact c;
   c.a = a;
   c.b = b;
@@ -127,14 +125,16 @@ class CubePile {
 
   /// `upper` stands on `lower` (0: the floor) with the corners of the overlap of both faces.
   void support(std::uint32_t lower, std::uint32_t upper) {
-    const Vec3 d = lower == 0 ? Vec3(Vec3::Zero()) : Vec3(problem_.bodies[lower].x - problem_.bodies[upper].x);
+    const Vec3 d =
+        lower == 0 ? Vec3(Vec3::Zero()) : Vec3(problem_.bodies[lower].x - problem_.bodies[upper].x);
     const double x[2] = {std::max(-0.5, d.x() - 0.5), std::min(0.5, d.x() + 0.5)};
     const double y[2] = {std::max(-0.5, d.y() - 0.5), std::min(0.5, d.y() + 0.5)};
     for (int i = 0; i < 4; ++i) points_.push_back({lower, upper, Vec3(x[i & 1], y[i >> 1], -0.5)});
     impulses_.resize(points_.size(), Vec3::Zero());
   }
 
-  SolverReport step(SolveFunction solve, const SolverSettings& settings, const BoundSettings& bounds = kNoSlop) {
+  SolverReport step(SolveFunction solve, const SolverSettings& settings,
+                    const BoundSettings& bounds = kNoSlop) {
     prepare_step(bounds);
     const SolverReport report = solve(problem_, settings);
     for (std::size_t i = 0; i < points_.size(); ++i) impulses_[i] = problem_.contacts[i].lambda;
@@ -149,7 +149,8 @@ class CubePile {
       const Vec3 n = A.q * Vec3::UnitZ();
       const Vec3 p = B.x + B.q * points_[i].p_B;
       const double gap = n.dot(p - A.x) - 0.5;
-      PointContact c = contact_at(problem_, points_[i].lower, points_[i].upper, p - 0.5 * gap * n, n, gap, friction_);
+      PointContact c =
+          contact_at(problem_, points_[i].lower, points_[i].upper, p - 0.5 * gap * n, n, gap, friction_);
       c.lambda = impulses_[i];
       problem_.contacts.push_back(c);
     }

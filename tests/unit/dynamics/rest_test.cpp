@@ -14,7 +14,10 @@ ContactProblem island(double speed) {
   ContactProblem problem;
   problem.h = 1.0 / 64;
   SolverBody body;
+  body.x = Vec3::Zero();
+  body.q = Quat::Identity();
   body.inv_mass = 2.0;
+  body.inv_I_W = Mat3::Identity();
   body.v = body.v0 = Vec3(0.0, 0.6 * speed, 0.0);
   body.w = body.w0 = Vec3(0.0, 0.0, 0.4 * speed);
   SolverBody belt = body;  // immovable: its speed is not the island's

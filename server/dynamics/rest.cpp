@@ -21,9 +21,9 @@ bool check_rest(const ContactProblem& problem, double residual, const RestSettin
     return false;
   }
   const double speed = island_speed(problem);
-  calm_for = speed < settings.calm_speed ? calm_for + problem.h : 0.0;
-  const double limit = std::min(settings.speed, settings.acceleration * problem.h);
-  const bool certified = residual < settings.residual && speed < limit;
+  const bool solved = residual < settings.residual;
+  calm_for = !solved && speed < settings.calm_speed ? calm_for + problem.h : 0.0;
+  const bool certified = solved && speed < std::min(settings.speed, settings.acceleration * problem.h);
   return certified || calm_for >= settings.calm_time;
 }
 

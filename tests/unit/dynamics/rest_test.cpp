@@ -70,6 +70,12 @@ TEST(Rest, ComesAfterACalmTimeAndAnyHasteStartsItAnew) {
   EXPECT_TRUE(check_rest(island(slow), 1.0, kSettings, calm_for));  // 32/64 s = calm_time
 }
 
+TEST(Rest, SlowMotionThatIsSolvedExactlyIsNeverCalmedAway) {
+  double calm_for = 100.0;
+  EXPECT_FALSE(check_rest(island(1e-4), 1e-9, kSettings, calm_for));
+  EXPECT_EQ(calm_for, 0.0);
+}
+
 TEST(Rest, NothingHoldsABodyWithoutContact) {
   ContactProblem problem = island(0.0);
   problem.contacts.clear();

@@ -31,9 +31,9 @@ class AabbTree {
  private:
   struct Node {
     Aabb bounds;
-    Leaf parent = kNone;       // next free node when unused
+    Leaf parent = kNone;  // next free node when unused
     Leaf child[2] = {kNone, kNone};
-    std::int32_t height = 0;   // 0: leaf
+    std::int32_t height = 0;  // 0: leaf
     std::uint32_t user = 0;
     bool is_leaf() const { return child[0] == kNone; }
   };

@@ -11,12 +11,12 @@ namespace tumble {
 
 struct ConvexHull {
   struct Face {
-    Vec3 normal;              ///< Outward unit normal.
-    double offset;            ///< normal . x = offset on the face [m].
+    Vec3 normal;                 ///< Outward unit normal.
+    double offset;               ///< normal . x = offset on the face [m].
     std::uint32_t first, count;  ///< Slice of `loops`: the face's vertices, counter-clockwise from outside.
   };
   struct Edge {
-    std::uint32_t tail, head;         ///< Vertex indices.
+    std::uint32_t tail, head;             ///< Vertex indices.
     std::uint32_t left_face, right_face;  ///< Faces on either side; the loop of left_face runs tail -> head.
   };
 

@@ -15,8 +15,8 @@ namespace tumble {
 inline constexpr int kMaxManifoldPoints = 8;
 
 struct ManifoldPoint {
-  Vec3 p_A;              ///< Middle of the gap, in A's frame [m].
-  double separation;     ///< Along the normal [m]; < 0 is overlap.
+  Vec3 p_A;               ///< Middle of the gap, in A's frame [m].
+  double separation;      ///< Along the normal [m]; < 0 is overlap.
   std::uint32_t feature;  ///< Stable id of the pair of features that made the point, for warm starting.
 };
 
@@ -29,7 +29,8 @@ struct Manifold {
 /// Largest overlap of the manifold's points [m], >= 0.
 inline double deepest(const Manifold& manifold) {
   double depth = 0.0;
-  for (int i = 0; i < manifold.count; ++i) depth = std::max(depth, -manifold.points[static_cast<std::size_t>(i)].separation);
+  for (int i = 0; i < manifold.count; ++i)
+    depth = std::max(depth, -manifold.points[static_cast<std::size_t>(i)].separation);
   return depth;
 }
 

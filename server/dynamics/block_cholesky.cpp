@@ -64,7 +64,8 @@ BlockCholesky::BlockCholesky(BlockPattern pattern)
   for (std::uint32_t k = 0; k < pattern_.size(); ++k) {
     const std::uint32_t end = pattern_.column_begin(k + 1);
     for (std::uint32_t j = pattern_.column_begin(k); j < end; ++j) {
-      for (std::uint32_t i = j + 1; i < end; ++i) targets_.push_back(pattern_.block(pattern_.row(i), pattern_.row(j)));
+      for (std::uint32_t i = j + 1; i < end; ++i)
+        targets_.push_back(pattern_.block(pattern_.row(i), pattern_.row(j)));
     }
   }
 }

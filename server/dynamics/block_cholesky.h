@@ -28,7 +28,8 @@ class BlockCholesky {
  private:
   BlockPattern pattern_;
   std::vector<Mat6> diagonal_, below_;
-  std::vector<std::uint32_t> targets_;  // block that each update of a pair of rows of a column goes to, in loop order
+  std::vector<std::uint32_t>
+      targets_;  // block that each update of a pair of rows of a column goes to, in loop order
 };
 
 }  // namespace tumble

@@ -24,11 +24,11 @@ enum class BodyType : std::uint8_t {
 
 /// The hot state, contiguous in the world's arrays. p_WB is the centre of mass.
 struct Motion {
-  Vec3 x = Vec3::Zero();         ///< p_WB [m]
-  Quat q = Quat::Identity();     ///< q_WB
-  Vec3 v = Vec3::Zero();         ///< v_WB of the centre of mass, in W [m/s]
-  Vec3 L = Vec3::Zero();         ///< Angular momentum about the centre of mass, in W [kg m^2/s]; the angular state.
-  Vec3 w = Vec3::Zero();         ///< w_WB in W [rad/s], derived: I_W^-1 L (dynamic bodies), given (kinematic ones).
+  Vec3 x = Vec3::Zero();      ///< p_WB [m]
+  Quat q = Quat::Identity();  ///< q_WB
+  Vec3 v = Vec3::Zero();      ///< v_WB of the centre of mass, in W [m/s]
+  Vec3 L = Vec3::Zero();  ///< Angular momentum about the centre of mass, in W [kg m^2/s]; the angular state.
+  Vec3 w = Vec3::Zero();  ///< w_WB in W [rad/s], derived: I_W^-1 L (dynamic bodies), given (kinematic ones).
 };
 
 /// w = I_W^-1 L at the orientation q (course: p_r = I v_r, inverted).
@@ -36,6 +36,8 @@ Vec3 angular_velocity(const MassProperties& mass, const Quat& q_WB, const Vec3& 
 /// L = I_W w.
 Vec3 angular_momentum(const MassProperties& mass, const Quat& q_WB, const Vec3& w_W);
 /// Velocity of the body's point at r [m] from the centre of mass (course: v = v_r x x' + v_l).
-inline Vec3 point_velocity(const Motion& body, const Vec3& r_W) { return body.v + body.w.cross(r_W); }
+inline Vec3 point_velocity(const Motion& body, const Vec3& r_W) {
+  return body.v + body.w.cross(r_W);
+}
 
 }  // namespace tumble

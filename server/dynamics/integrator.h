@@ -26,7 +26,8 @@ struct VelocityPath {
 /// Moves x and q over h [s] and leaves v1 and L1 (and w derived from it) in `body`; body.q unit to round-off.
 /// `course` alone keeps w instead of L over the turn, as taught: its L is not conserved.
 void integrate_course(const MassProperties& mass, const VelocityPath& path, double h, Motion& body);
-void integrate_semi_implicit_euler(const MassProperties& mass, const VelocityPath& path, double h, Motion& body);
+void integrate_semi_implicit_euler(const MassProperties& mass, const VelocityPath& path, double h,
+                                   Motion& body);
 void integrate_rk4(const MassProperties& mass, const VelocityPath& path, double h, Motion& body);
 void integrate_taylor8(const MassProperties& mass, const VelocityPath& path, double h, Motion& body);
 

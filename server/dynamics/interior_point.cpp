@@ -104,14 +104,17 @@ std::vector<std::uint32_t> InteriorPoint::number_movable(const ContactProblem& p
   return number;
 }
 
-BlockPattern InteriorPoint::make_pattern(const ContactProblem& problem, const std::vector<std::uint32_t>& number) {
+BlockPattern InteriorPoint::make_pattern(const ContactProblem& problem,
+                                         const std::vector<std::uint32_t>& number) {
   std::vector<BlockPattern::Edge> edges;
   const auto add = [&](std::uint32_t a, std::uint32_t b) {
-    if (a != b && number[a] != kImmovable && number[b] != kImmovable) edges.emplace_back(number[a], number[b]);
+    if (a != b && number[a] != kImmovable && number[b] != kImmovable)
+      edges.emplace_back(number[a], number[b]);
   };
   for (const PointContact& c : problem.contacts) add(c.a, c.b);
   for (const ScalarRow& row : problem.rows) add(row.a, row.b);
-  const auto movable = number.size() - static_cast<std::size_t>(std::count(number.begin(), number.end(), kImmovable));
+  const auto movable =
+      number.size() - static_cast<std::size_t>(std::count(number.begin(), number.end(), kImmovable));
   return BlockPattern(static_cast<std::uint32_t>(movable), edges);
 }
 
@@ -154,7 +157,8 @@ bool InteriorPoint::join(std::uint32_t a, std::uint32_t b, Joined& joined) const
   return pA > pB;
 }
 
-Vec3 InteriorPoint::immovable_velocity(std::uint32_t a, std::uint32_t b, const Vec3& rA, const Vec3& rB) const {
+Vec3 InteriorPoint::immovable_velocity(std::uint32_t a, std::uint32_t b, const Vec3& rA,
+                                       const Vec3& rB) const {
   const SolverBody &A = problem_.bodies[a], &B = problem_.bodies[b];
   Vec3 u = Vec3::Zero();
   if (number_[b] == kImmovable) u += B.v + B.w.cross(rB);
@@ -203,7 +207,7 @@ void InteriorPoint::add_row(ScalarRow& row) {
     cone.friction = 1.0;
     cone.mass_n = row.mass;
     cone.row = &row.lambda;
-      return;
+    return;
   }
   SoftRow& soft = soft_rows_.emplace_back();
   soft.joined = joined;
@@ -308,7 +312,8 @@ void InteriorPoint::find_direction() {
 
 double InteriorPoint::step_length() const {
   double step = std::numeric_limits<double>::infinity();
-  for (const Cone& cone : cones_) step = std::min({step, cone_step(cone.s, cone.ds), cone_step(cone.z, cone.dz)});
+  for (const Cone& cone : cones_)
+    step = std::min({step, cone_step(cone.s, cone.ds), cone_step(cone.z, cone.dz)});
   return step;
 }
 
@@ -328,7 +333,8 @@ void InteriorPoint::predict_and_correct() {
   const double mean = complementarity / static_cast<double>(cones_.size());
   for (Cone& cone : cones_) {
     const ConeScaling& scaling = cone.scaling;
-    const Vec3 second_order = cone_product(scaling.inverse_square * (scaling.W * cone.ds), scaling.W * cone.dz);
+    const Vec3 second_order =
+        cone_product(scaling.inverse_square * (scaling.W * cone.ds), scaling.W * cone.dz);
     const Vec3 wanted = Vec3(centring * mean, 0.0, 0.0) - cone_product(scaling.l, scaling.l) - second_order;
     cone.target = cone_divide(wanted, scaling.l);
   }

@@ -9,7 +9,9 @@
 namespace tumble {
 namespace {
 
-double length_of_tail(const Vec3& x) { return std::sqrt(x.y() * x.y() + x.z() * x.z()); }
+double length_of_tail(const Vec3& x) {
+  return std::sqrt(x.y() * x.y() + x.z() * x.z());
+}
 
 }  // namespace
 
@@ -52,8 +54,8 @@ ConeScaling make_cone_scaling(const Vec3& s, const Vec3& z) {
 
   ConeScaling scaling;
   const double share = 1.0 / (1.0 + w.x());
-  scaling.W << w.x(), w.y(), w.z(),                                        //
-      w.y(), 1.0 + share * w.y() * w.y(), share * w.y() * w.z(),           //
+  scaling.W << w.x(), w.y(), w.z(),                               //
+      w.y(), 1.0 + share * w.y() * w.y(), share * w.y() * w.z(),  //
       w.z(), share * w.y() * w.z(), 1.0 + share * w.z() * w.z();
   scaling.W *= eta;
   const Vec3 v(w.x(), -w.y(), -w.z());

@@ -12,9 +12,9 @@ namespace tumble {
 
 /// Mass distribution of one solid or a compound, about its own centre of mass.
 struct Inertia {
-  double mass = 0.0;             ///< [kg], > 0.
-  Vec3 center = Vec3::Zero();    ///< Centre of mass in the frame of description [m].
-  Mat3 moments = Mat3::Zero();   ///< Inertia about `center`, axes of the frame of description [kg m^2].
+  double mass = 0.0;            ///< [kg], > 0.
+  Vec3 center = Vec3::Zero();   ///< Centre of mass in the frame of description [m].
+  Mat3 moments = Mat3::Zero();  ///< Inertia about `center`, axes of the frame of description [kg m^2].
 };
 
 /// Inertia of a solid of uniform density [kg/m^3], in the shape's frame S. Sphere 2/5 m r^2 and box 1/12 m (a^2+b^2)
@@ -35,10 +35,10 @@ std::string check_inertia(const Inertia& inertia);
 /// What the integrators and the solver need of a body. Frame B: origin at the centre of mass, axes of the link.
 /// Frame P: principal axes. For a body that cannot move all inverses are 0.
 struct MassProperties {
-  double mass = 0.0, inv_mass = 0.0;        ///< [kg], [1/kg]
-  Vec3 I = Vec3::Zero();                    ///< Principal moments [kg m^2].
+  double mass = 0.0, inv_mass = 0.0;  ///< [kg], [1/kg]
+  Vec3 I = Vec3::Zero();              ///< Principal moments [kg m^2].
   Vec3 inv_I = Vec3::Zero();
-  Quat q_BP = Quat::Identity();             ///< Principal axes in B; exactly the identity if B's axes are principal.
+  Quat q_BP = Quat::Identity();  ///< Principal axes in B; exactly the identity if B's axes are principal.
 };
 
 /// Principal axes by Jacobi rotations (exactly the identity for an exactly diagonal tensor).

@@ -15,7 +15,8 @@ double island_speed(const ContactProblem& problem) {
   return fastest;
 }
 
-bool check_rest(const ContactProblem& problem, double residual, const RestSettings& settings, double& calm_for) {
+bool check_rest(const ContactProblem& problem, double residual, const RestSettings& settings,
+                double& calm_for) {
   if (problem.contacts.empty() && problem.rows.empty()) {
     calm_for = 0.0;
     return false;

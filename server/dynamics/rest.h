@@ -8,13 +8,14 @@
 namespace tumble {
 
 struct RestSettings {
-  double residual = 1e-6;           ///< [m/s] certified: largest residual.
-  double speed = 1e-6;              ///< [m/s] certified: largest |v| + |w| r; also capped by `acceleration` h.
-  double acceleration = 6e-5;       ///< [m/s^2] what may go unnoticed at most: the speed limit is min(speed, this h).
+  double residual = 1e-6;  ///< [m/s] certified: largest residual.
+  double speed = 1e-6;     ///< [m/s] certified: largest |v| + |w| r; also capped by `acceleration` h.
+  double acceleration =
+      6e-5;  ///< [m/s^2] what may go unnoticed at most: the speed limit is min(speed, this h).
   /// [m/s] calm, only for islands whose residual is above `residual`. A sub-stepped heap of 1000 bodies keeps trembling at
   /// a few mm/s; Box3D's limit is 5e-2.
   double calm_speed = 1e-2;
-  double calm_time = 0.5;           ///< [s]
+  double calm_time = 0.5;  ///< [s]
 };
 
 /// Largest |v| + |w| of the island's movable bodies at either end of the step (m/s and rad/s added).
@@ -23,6 +24,7 @@ double island_speed(const ContactProblem& problem);
 /// True if the island, solved with `residual`, may rest now. `calm_for` [s] is how long it has been calm, updated here. An
 /// island whose residual is small is judged by the certificate alone: its slow motion is real. An island without contacts
 /// or taut rows never rests: nothing holds it.
-bool check_rest(const ContactProblem& problem, double residual, const RestSettings& settings, double& calm_for);
+bool check_rest(const ContactProblem& problem, double residual, const RestSettings& settings,
+                double& calm_for);
 
 }  // namespace tumble

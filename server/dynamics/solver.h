@@ -10,20 +10,20 @@ namespace tumble {
 
 enum class Solver {
   course_impulse,  ///< The slides: one contact at a time, fraction f of the unit impulse, positional correction.
-  pgs,             ///< Warm-started projected Gauss-Seidel, friction disc, sweeps until the residual is small.
-  nncg,            ///< The same sweeps, accelerated by conjugate gradients.
-  soft_step,       ///< Sub-steps with soft contacts and a relax pass (TGS-soft).
-  exact,           ///< Warm start if good enough, else interior point and polish: to rounding, at any mass ratio.
-  automatic,       ///< exact for islands of up to `exact_bodies` movable bodies, soft_step for larger ones.
+  pgs,        ///< Warm-started projected Gauss-Seidel, friction disc, sweeps until the residual is small.
+  nncg,       ///< The same sweeps, accelerated by conjugate gradients.
+  soft_step,  ///< Sub-steps with soft contacts and a relax pass (TGS-soft).
+  exact,      ///< Warm start if good enough, else interior point and polish: to rounding, at any mass ratio.
+  automatic,  ///< exact for islands of up to `exact_bodies` movable bodies, soft_step for larger ones.
 };
 
 struct SolverSettings {
-  int max_sweeps = 30;         ///< pgs, nncg: upper limit of sweeps; course_impulse: passes over the contacts.
+  int max_sweeps = 30;  ///< pgs, nncg: upper limit of sweeps; course_impulse: passes over the contacts.
   /// [m/s] residual at which pgs and nncg stop, and at which they and exact accept a warm start unsolved. exact solves to
   /// a tenth of it: 1e-9 by default, a thousandth of what certified rest asks for, in reach of every standing scene.
   double tolerance = 1e-8;
-  int sub_steps = 4;           ///< soft_step.
-  int exact_bodies = 60;       ///< automatic: largest island, in movable bodies, that is solved exactly.
+  int sub_steps = 4;            ///< soft_step.
+  int exact_bodies = 60;        ///< automatic: largest island, in movable bodies, that is solved exactly.
   Vec3 gravity = Vec3::Zero();  ///< [m/s^2]; course_impulse tells microcollisions by it.
 };
 

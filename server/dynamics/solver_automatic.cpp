@@ -10,7 +10,8 @@ namespace tumble {
 SolverReport solve_automatic(ContactProblem& problem, const SolverSettings& settings) {
   const auto movable = std::count_if(problem.bodies.begin(), problem.bodies.end(),
                                      [](const SolverBody& body) { return body.inv_mass > 0.0; });
-  return movable <= settings.exact_bodies ? solve_exact(problem, settings) : solve_soft_step(problem, settings);
+  return movable <= settings.exact_bodies ? solve_exact(problem, settings)
+                                          : solve_soft_step(problem, settings);
 }
 
 }  // namespace tumble

@@ -25,7 +25,9 @@ double mean_decay(double x);
 Quat exp_map(const Vec3& r);
 
 /// Rotation matrix R from its unit quaternion, orthonormal to round-off for a unit q.
-inline Mat3 rotation_matrix(const Quat& q) { return q.toRotationMatrix(); }
+inline Mat3 rotation_matrix(const Quat& q) {
+  return q.toRotationMatrix();
+}
 
 /// q / |q|. A no-op to round-off for unit q; callers use it after every product that accumulates.
 inline Quat normalized(const Quat& q) {

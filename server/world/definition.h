@@ -14,25 +14,25 @@
 namespace tumble {
 
 struct Material {
-  double friction = 0.5;       ///< Coulomb's mu, >= 0. Of a pair: sqrt(mu_a mu_b).
-  double restitution = 0.0;    ///< C_r, 0..1. Of a pair: the larger.
-  double density = 1000.0;     ///< [kg/m^3], > 0; used where a body gives no inertia of its own.
+  double friction = 0.5;     ///< Coulomb's mu, >= 0. Of a pair: sqrt(mu_a mu_b).
+  double restitution = 0.0;  ///< C_r, 0..1. Of a pair: the larger.
+  double density = 1000.0;   ///< [kg/m^3], > 0; used where a body gives no inertia of its own.
 };
 
 struct GeometryDefinition {
   std::string name;
   Shape shape = Sphere{0.5};
-  Pose X_LS;                   ///< The shape's frame in the link's.
+  Pose X_LS;  ///< The shape's frame in the link's.
   Material material;
   std::array<float, 4> color = {0.7f, 0.7f, 0.7f, 1.0f};  ///< RGBA 0..1, for viewers.
 };
 
 struct BodyDefinition {
-  std::string name;            ///< Unique in the world, 1..63 printable characters.
+  std::string name;  ///< Unique in the world, 1..63 printable characters.
   BodyType type = BodyType::dynamic;
-  Pose X_WL;                   ///< Link frame in W. The body frame B has its axes and sits at the centre of mass.
-  Vec3 v_WB = Vec3::Zero();    ///< Of the centre of mass [m/s].
-  Vec3 w_WB = Vec3::Zero();    ///< [rad/s]
+  Pose X_WL;  ///< Link frame in W. The body frame B has its axes and sits at the centre of mass.
+  Vec3 v_WB = Vec3::Zero();  ///< Of the centre of mass [m/s].
+  Vec3 w_WB = Vec3::Zero();  ///< [rad/s]
   std::vector<GeometryDefinition> geometries;
   std::optional<Inertia> inertia;  ///< In the link frame; else from geometries and densities.
   double linear_damping = 0.0;     ///< c [1/s] >= 0: v' = a - c v.
@@ -62,11 +62,11 @@ struct RopeDefinition {
 struct Push {
   enum class Frame : std::uint8_t { world, body };
   BodyId body;
-  Frame frame = Frame::world;         ///< Axes of force and torque; a body-frame push turns with the body.
-  Vec3 force = Vec3::Zero();          ///< [N]
-  Vec3 torque = Vec3::Zero();         ///< [N m]
-  Vec3 point_B = Vec3::Zero();        ///< Where the force acts: from the centre of mass, link axes [m].
-  double duration = 0.0;              ///< [s]; the last step carries the fraction that is left. 0: exactly one step.
+  Frame frame = Frame::world;   ///< Axes of force and torque; a body-frame push turns with the body.
+  Vec3 force = Vec3::Zero();    ///< [N]
+  Vec3 torque = Vec3::Zero();   ///< [N m]
+  Vec3 point_B = Vec3::Zero();  ///< Where the force acts: from the centre of mass, link axes [m].
+  double duration = 0.0;  ///< [s]; the last step carries the fraction that is left. 0: exactly one step.
 };
 
 }  // namespace tumble

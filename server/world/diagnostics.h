@@ -11,12 +11,12 @@ namespace tumble {
 
 struct Counters {
   NarrowPhaseCounters narrow_phase;
-  std::uint64_t boxes_renewed = 0;        ///< Broad-phase boxes that a body left.
+  std::uint64_t boxes_renewed = 0;  ///< Broad-phase boxes that a body left.
   std::uint64_t bodies_stepped = 0, bodies_skipped_resting = 0;
   std::uint64_t islands_solved = 0, islands_accepted = 0, islands_free = 0;
   std::uint64_t sweeps = 0;
-  std::uint64_t solver_iterations = 0;     ///< Factorizations of the exact solver.
-  std::uint64_t solver_fallbacks = 0;      ///< Islands without a trustworthy exact solution.
+  std::uint64_t solver_iterations = 0;  ///< Factorizations of the exact solver.
+  std::uint64_t solver_fallbacks = 0;   ///< Islands without a trustworthy exact solution.
   std::uint64_t impacts = 0, impacts_capped = 0;
   std::uint64_t rests = 0, wakes = 0;
   std::uint64_t non_finite_contained = 0;  ///< Bodies held at their last good state.
@@ -32,9 +32,10 @@ struct StepReport {
 
 /// Sums over all movable bodies, about W's origin.
 struct Conserved {
-  double kinetic_energy = 0.0, potential_energy = 0.0;  ///< [J]; gravity (0 at the origin's height) and springs
-  Vec3 momentum = Vec3::Zero();                         ///< [N s]
-  Vec3 angular_momentum = Vec3::Zero();                 ///< [N m s]
+  double kinetic_energy = 0.0,
+         potential_energy = 0.0;         ///< [J]; gravity (0 at the origin's height) and springs
+  Vec3 momentum = Vec3::Zero();          ///< [N s]
+  Vec3 angular_momentum = Vec3::Zero();  ///< [N m s]
 };
 
 /// Called at the border between stages, so that a caller with a clock can time them.

@@ -10,8 +10,8 @@ namespace tumble {
 namespace {
 
 bool is_finite(const Motion& motion) {
-  return motion.x.allFinite() && motion.q.coeffs().allFinite() && motion.v.allFinite() && motion.L.allFinite() &&
-         motion.w.allFinite();
+  return motion.x.allFinite() && motion.q.coeffs().allFinite() && motion.v.allFinite() &&
+         motion.L.allFinite() && motion.w.allFinite();
 }
 
 }  // namespace
@@ -158,7 +158,8 @@ void World::store_impulses() {
     const PointContact& row = scratch_.problem.contacts[i];
     const Scratch::Source source = scratch_.contact_source[i];
     const Vec3 impulse = row.lambda.x() * row.n + row.lambda.y() * row.t1 + row.lambda.z() * row.t2;
-    contacts_.all()[source.contact].impulse[source.point] = impulse.allFinite() ? impulse : Vec3(Vec3::Zero());
+    contacts_.all()[source.contact].impulse[source.point] =
+        impulse.allFinite() ? impulse : Vec3(Vec3::Zero());
   }
   for (std::size_t i = 0; i < scratch_.problem.rows.size(); ++i) {
     const double lambda = scratch_.problem.rows[i].lambda;

@@ -14,14 +14,14 @@ namespace tumble {
 enum class Accuracy { fast, balanced, exact };
 
 struct Options {
-  double time_step = 1.0 / 240.0;  ///< [s], 1e-6..0.1. Smaller: better contacts, proportionally slower.
+  double time_step = 1.0 / 240.0;        ///< [s], 1e-6..0.1. Smaller: better contacts, proportionally slower.
   Vec3 gravity = Vec3(0.0, 0.0, -9.81);  ///< [m/s^2]
   Integrator integrator = Integrator::taylor8;
   Solver solver = Solver::automatic;
 
   // Collision
-  double contact_margin = 0.02;    ///< [m] contacts start at this gap. Smaller: fewer rows, later warm start.
-  double fat_margin = 0.05;        ///< [m] slack of broad-phase boxes. Larger: fewer renewals, more pairs.
+  double contact_margin = 0.02;  ///< [m] contacts start at this gap. Smaller: fewer rows, later warm start.
+  double fat_margin = 0.05;      ///< [m] slack of broad-phase boxes. Larger: fewer renewals, more pairs.
   NarrowPhaseOptions narrow_phase;
 
   // Contact
@@ -33,7 +33,7 @@ struct Options {
 
   // Rest
   RestSettings rest;
-  bool skip_resting = true;        ///< Off: resting islands are stepped like all others.
+  bool skip_resting = true;  ///< Off: resting islands are stepped like all others.
 };
 
 /// Options for a level of accuracy: budgets and tolerances together.

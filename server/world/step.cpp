@@ -75,7 +75,8 @@ void World::update_broad_phase(const StepContext& step) {
   const auto update = [&](std::uint32_t slot) {
     for (const std::uint32_t index : bodies_[slot].geometries) {
       const Geometry& geometry = geometries_[index];
-      broad_phase_.move(index, contact_bounds(geometry, step.h), geometry.fat_margin, step.h * motions_[slot].v);
+      broad_phase_.move(index, contact_bounds(geometry, step.h), geometry.fat_margin,
+                        step.h * motions_[slot].v);
     }
   };
   for (const std::uint32_t slot : awake_) update(slot);
@@ -88,7 +89,9 @@ void World::update_broad_phase(const StepContext& step) {
     const std::uint32_t b = geometries_[pair.b].body;
     return a == b || !(movable(a) || movable(b));
   });
-  const auto lost = [this](std::uint32_t index) { return !broad_phase_.overlaps(contacts_.all()[index].pair); };
+  const auto lost = [this](std::uint32_t index) {
+    return !broad_phase_.overlaps(contacts_.all()[index].pair);
+  };
   if (std::any_of(active_contacts_.begin(), active_contacts_.end(), lost)) {
     contacts_.remove_if([this](const Contact& contact) { return !broad_phase_.overlaps(contact.pair); });
     active_stale_ = true;
@@ -167,7 +170,8 @@ void World::refresh_active() {
 
 bool World::takes_part(std::uint32_t slot) const {
   if (movable(slot)) return awake(slot);
-  return bodies_[slot].type == BodyType::kinematic && !(motions_[slot].v.isZero(0.0) && motions_[slot].w.isZero(0.0));
+  return bodies_[slot].type == BodyType::kinematic &&
+         !(motions_[slot].v.isZero(0.0) && motions_[slot].w.isZero(0.0));
 }
 
 void World::build_islands() {

@@ -9,14 +9,17 @@
 namespace tumble {
 namespace {
 
-[[noreturn]] void refuse(const std::string& reason) { throw std::invalid_argument(reason); }
+[[noreturn]] void refuse(const std::string& reason) {
+  throw std::invalid_argument(reason);
+}
 
 void check_finite(const char* field, const Vec3& v) {
   if (!v.allFinite()) refuse(fmt::format("{}: must be finite ({} {} {})", field, v.x(), v.y(), v.z()));
 }
 
 void check_range(const char* field, double value, double low, double high) {
-  if (!(value >= low && value <= high)) refuse(fmt::format("{}: must be {}..{} ({})", field, low, high, value));
+  if (!(value >= low && value <= high))
+    refuse(fmt::format("{}: must be {}..{} ({})", field, low, high, value));
 }
 
 void check_pose(const char* field, const Pose& pose) {
@@ -31,7 +34,7 @@ void check_pose(const char* field, const Pose& pose) {
 constexpr double kMaxSpeed = 1e6;
 constexpr double kMaxCoordinate = 1e9;  // [m]: a double still resolves 1e-7 m there
 constexpr double kMaxFriction = 1e6;
-constexpr double kMaxForce = 1e15;      // [N, N m]
+constexpr double kMaxForce = 1e15;  // [N, N m]
 
 void check_material(const Material& material) {
   check_range("friction", material.friction, 0.0, kMaxFriction);
@@ -42,7 +45,8 @@ void check_material(const Material& material) {
 void check_name(const std::string& name) {
   if (name.empty() || name.size() > 63) refuse(fmt::format("name: must have 1..63 characters ('{}')", name));
   for (const char c : name) {
-    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) refuse(fmt::format("name: control character ('{}')", name));
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f)
+      refuse(fmt::format("name: control character ('{}')", name));
   }
 }
 
@@ -231,7 +235,8 @@ void World::add_tie(const std::string& name, const Anchor& a, const Anchor& b,
   resolve_anchor(a, tie.a, tie.pA);
   resolve_anchor(b, tie.b, tie.pB);
   const bool moves = (tie.a != kWorld && movable(tie.a)) || (tie.b != kWorld && movable(tie.b));
-  if (!moves || tie.a == tie.b) refuse("anchor: a spring or rope needs two different ends, one on a dynamic body");
+  if (!moves || tie.a == tie.b)
+    refuse("anchor: a spring or rope needs two different ends, one on a dynamic body");
   for (const std::uint32_t slot : {tie.a, tie.b}) {
     if (slot != kWorld) wake_slot(slot);
   }
@@ -252,13 +257,15 @@ void World::create_rope(const RopeDefinition& definition) {
 }
 
 void World::check_live(BodyId id, const char* field) const {
-  if (!is_valid(id)) refuse(fmt::format("{}: no such body (index {}, generation {})", field, id.index, id.generation));
+  if (!is_valid(id))
+    refuse(fmt::format("{}: no such body (index {}, generation {})", field, id.index, id.generation));
 }
 
 void World::push(const Push& push) {
   check_live(push.body, "body");
   if (!movable(push.body.index)) {
-    refuse(fmt::format("body: only a dynamic body can be pushed ('{}')", bodies_[push.body.index].definition.name));
+    refuse(fmt::format("body: only a dynamic body can be pushed ('{}')",
+                       bodies_[push.body.index].definition.name));
   }
   check_finite("force", push.force);
   check_finite("torque", push.torque);
@@ -269,7 +276,8 @@ void World::push(const Push& push) {
   check_range("duration", push.duration, 0.0, 1e9);
   double steps = push.duration == 0.0 ? 1.0 : push.duration / options_.time_step;
   // A duration of whole steps must not leave a sliver for one more.
-  if (const double whole = std::nearbyint(steps); whole > 0.0 && std::abs(steps - whole) < 1e-9 * whole) steps = whole;
+  if (const double whole = std::nearbyint(steps); whole > 0.0 && std::abs(steps - whole) < 1e-9 * whole)
+    steps = whole;
   pushes_.push_back({push, steps});
   wake_slot(push.body.index);
 }
@@ -323,7 +331,8 @@ void World::wake_slot(std::uint32_t slot) {
 }
 
 bool World::is_valid(BodyId id) const {
-  return id.index < bodies_.size() && bodies_[id.index].exists && bodies_[id.index].generation == id.generation;
+  return id.index < bodies_.size() && bodies_[id.index].exists &&
+         bodies_[id.index].generation == id.generation;
 }
 
 std::optional<BodyId> World::find(std::string_view name) const {

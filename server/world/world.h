@@ -137,7 +137,8 @@ class World {
   std::uint32_t take_slot();
   std::uint32_t add_geometry(std::uint32_t slot, const GeometryDefinition& definition);
   void resolve_anchor(const Anchor& anchor, std::uint32_t& slot, Vec3& p) const;
-  void add_tie(const std::string& name, const Anchor& a, const Anchor& b, const std::variant<Spring, Rope>& law);
+  void add_tie(const std::string& name, const Anchor& a, const Anchor& b,
+               const std::variant<Spring, Rope>& law);
   void check_live(BodyId id, const char* field) const;
   bool movable(std::uint32_t slot) const { return bodies_[slot].type == BodyType::dynamic; }
   bool awake(std::uint32_t slot) const { return awake_flag_[slot] != 0; }
@@ -188,9 +189,9 @@ class World {
   // State, by slot: hot arrays.
   std::vector<Motion> motions_;
   std::vector<std::uint8_t> awake_flag_;
-  std::vector<std::uint8_t> pushed_;          // has an active push: must not rest
-  std::vector<double> calm_for_;              // [s]
-  std::vector<std::uint32_t> rest_next_;      // ring of the bodies that came to rest together
+  std::vector<std::uint8_t> pushed_;      // has an active push: must not rest
+  std::vector<double> calm_for_;          // [s]
+  std::vector<std::uint32_t> rest_next_;  // ring of the bodies that came to rest together
 
   BroadPhase broad_phase_;
   ContactGraph contacts_;
@@ -199,9 +200,9 @@ class World {
 
   // Who takes part in the step, ascending; rebuilt only when contacts or sleepers changed.
   bool active_stale_ = true;
-  std::vector<std::uint32_t> awake_;             // movable bodies
-  std::vector<std::uint32_t> kinematic_;         // kinematic bodies
-  std::vector<std::uint32_t> active_contacts_;   // with an awake or moving body
+  std::vector<std::uint32_t> awake_;            // movable bodies
+  std::vector<std::uint32_t> kinematic_;        // kinematic bodies
+  std::vector<std::uint32_t> active_contacts_;  // with an awake or moving body
   std::uint32_t resting_points_ = 0;
   double resting_penetration_ = 0.0;
   double step_residual_ = 0.0;  // [m/s] largest of the step's islands

@@ -64,7 +64,8 @@ TEST(Bounce, InACradleAsManyBallsLeaveAsArrived) {
     World world(weightless());
     for (int i = 0; i < 5; ++i) {
       const double gap = i < arriving ? -0.5 : 0.0;
-      BodyDefinition ball = body_of_mass("ball" + std::to_string(i), Sphere{0.5}, 1.0, Vec3(i + gap, 0, 0), material);
+      BodyDefinition ball =
+          body_of_mass("ball" + std::to_string(i), Sphere{0.5}, 1.0, Vec3(i + gap, 0, 0), material);
       if (i < arriving) ball.v_WB = Vec3(1, 0, 0);
       world.create_body(ball);
     }

@@ -16,7 +16,8 @@ constexpr double kG = 9.81;  // [m/s^2]
 
 /// Gravity of a plane that falls by `slope` [rad] towards `heading` [rad from x].
 Vec3 tilted_gravity(double slope, double heading) {
-  return kG * Vec3(std::sin(slope) * std::cos(heading), std::sin(slope) * std::sin(heading), -std::cos(slope));
+  return kG *
+         Vec3(std::sin(slope) * std::cos(heading), std::sin(slope) * std::sin(heading), -std::cos(slope));
 }
 
 struct Slide {
@@ -24,7 +25,7 @@ struct Slide {
 };
 
 Slide slide(const Shape& shape, double height, double slope, double heading, double friction, double seconds,
-          double time_step = 1.0 / 240.0) {
+            double time_step = 1.0 / 240.0) {
   Options options;
   options.time_step = time_step;
   options.gravity = tilted_gravity(slope, heading);
@@ -37,7 +38,9 @@ Slide slide(const Shape& shape, double height, double slope, double heading, dou
   return {world.motion(id.index).x - start, world.motion(id.index).v};
 }
 
-Vec3 direction(double heading) { return {std::cos(heading), std::sin(heading), 0.0}; }
+Vec3 direction(double heading) {
+  return {std::cos(heading), std::sin(heading), 0.0};
+}
 
 TEST(Incline, ABlockSlidesByHalfGSinMinusMuCosTSquaredInAnyDirection) {
   const double slope = 0.5, friction = 0.3, t = 2.0;

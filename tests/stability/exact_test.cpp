@@ -84,7 +84,8 @@ TEST_P(ExactStack, ComesToRestWhereItWasPut) {
 }
 
 INSTANTIATE_TEST_SUITE_P(RatesAndTopMasses, ExactStack,
-                         ::testing::Combine(::testing::Values(60.0, 240.0), ::testing::Values(1.0, 1e3, 1e6)));
+                         ::testing::Combine(::testing::Values(60.0, 240.0),
+                                            ::testing::Values(1.0, 1e3, 1e6)));
 
 TEST(Exact, ADroppedStackComesToRestInHalfASecond) {
   for (const double rate : {60.0, 240.0}) {

@@ -35,8 +35,8 @@ inline std::uint32_t add_sphere(ContactProblem& problem, double mass, double rad
 }
 
 /// Contact at p (in W) with normal n from a to b.
-inline void add_contact(ContactProblem& problem, std::uint32_t a, std::uint32_t b, const Vec3& p, const Vec3& n,
-                        double friction, double separation = 0.0) {
+inline void add_contact(ContactProblem& problem, std::uint32_t a, std::uint32_t b, const Vec3& p,
+                        const Vec3& n, double friction, double separation = 0.0) {
   PointContact c;
   c.a = a;
   c.b = b;
@@ -55,7 +55,8 @@ inline void add_face_contact(ContactProblem& problem, std::uint32_t a, std::uint
   const SolverBody &A = problem.bodies[a], &B = problem.bodies[b];
   const auto range = [&](int axis) {
     const double half = A.inv_mass > 0.0 ? 0.5 : 1e3;
-    return std::pair(std::max(A.x[axis] - half, B.x[axis] - 0.5), std::min(A.x[axis] + half, B.x[axis] + 0.5));
+    return std::pair(std::max(A.x[axis] - half, B.x[axis] - 0.5),
+                     std::min(A.x[axis] + half, B.x[axis] + 0.5));
   };
   const auto [x0, x1] = range(0);
   const auto [y0, y1] = range(1);
@@ -70,7 +71,8 @@ inline void prepare_rigid(ContactProblem& problem) {
 }
 
 /// `count` unit cubes of 1 kg on each other with offsets of +-1 cm, the top one of another mass; body 0 is the ground.
-inline ContactProblem stack_problem(int count, double top_mass = 1.0, double h = 1.0 / 60.0, double friction = 0.5) {
+inline ContactProblem stack_problem(int count, double top_mass = 1.0, double h = 1.0 / 60.0,
+                                    double friction = 0.5) {
   ContactProblem problem;
   problem.h = h;
   add_cube(problem, 0.0, Vec3(0, 0, -0.5));

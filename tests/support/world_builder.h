@@ -25,8 +25,8 @@ inline BodyDefinition body(const std::string& name, const Shape& shape, const Ve
 }
 
 /// The same with its uniform density chosen to give `mass` [kg].
-inline BodyDefinition body_of_mass(const std::string& name, const Shape& shape, double mass, const Vec3& position,
-                                   Material material = {}) {
+inline BodyDefinition body_of_mass(const std::string& name, const Shape& shape, double mass,
+                                   const Vec3& position, Material material = {}) {
   material.density = mass / compute_inertia(shape, 1.0).mass;
   return body(name, shape, position, material);
 }

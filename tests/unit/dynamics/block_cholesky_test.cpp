@@ -71,7 +71,8 @@ struct RandomSystem {
 };
 
 TEST(BlockCholesky, SolvesLikeTheDenseMatrix) {
-  const Edges edges = {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {1, 4}, {4, 5}, {5, 6}, {6, 2}, {7, 0}, {7, 6}, {8, 3}};
+  const Edges edges = {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {1, 4}, {4, 5},
+                       {5, 6}, {6, 2}, {7, 0}, {7, 6}, {8, 3}};
   RandomSystem system(10, edges);  // body 9 touches nothing
   ASSERT_TRUE(system.sparse.factorize());
   std::vector<Vec6> x(10);

@@ -39,7 +39,8 @@ TEST(InteriorPoint, EveryLevelOfAStackCarriesTheWeightAboveIt) {
     EXPECT_LT(report.residual, 1e-8) << top;
     for (std::uint32_t level = 0; level < 10; ++level) {
       const double weight = (9.0 - level + top) * kG * problem.h;
-      EXPECT_NEAR(normal_impulse(problem, level, level + 1), weight, bound * weight) << top << " level " << level;
+      EXPECT_NEAR(normal_impulse(problem, level, level + 1), weight, bound * weight)
+          << top << " level " << level;
     }
   }
 }
@@ -79,7 +80,8 @@ TEST(InteriorPoint, AGrooveCarriesASphereByItsTwoNormals) {
     const SolverReport report = solve_exact(problem, settings());
     EXPECT_LT(report.residual, 1e-8);
     const double expected = 2.0 * kG * problem.h / (2.0 * cosine);
-    for (const PointContact& c : problem.contacts) EXPECT_NEAR(c.lambda.x(), expected, 1e-6 * expected) << friction;
+    for (const PointContact& c : problem.contacts)
+      EXPECT_NEAR(c.lambda.x(), expected, 1e-6 * expected) << friction;
   }
 }
 
@@ -123,7 +125,8 @@ TEST(InteriorPoint, ASolutionIsAcceptedAsTheWarmStartOfTheSameProblem) {
   ContactProblem problem = fresh;
   EXPECT_FALSE(solve_exact(problem, settings()).accepted);
   ContactProblem again = fresh;
-  for (std::size_t i = 0; i < again.contacts.size(); ++i) again.contacts[i].lambda = problem.contacts[i].lambda;
+  for (std::size_t i = 0; i < again.contacts.size(); ++i)
+    again.contacts[i].lambda = problem.contacts[i].lambda;
   EXPECT_TRUE(solve_exact(again, settings()).accepted);
   EXPECT_EQ(again.contacts[7].lambda, problem.contacts[7].lambda);
 }

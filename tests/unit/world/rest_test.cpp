@@ -13,7 +13,8 @@ World stack(int boxes, const Options& options = {}) {
   World world(options);
   world.create_body(ground());
   for (int i = 0; i < boxes; ++i) {
-    world.create_body(body_of_mass("box" + std::to_string(i), Box{Vec3(0.5, 0.5, 0.5)}, 1.0, Vec3(0, 0, 0.5 + i)));
+    world.create_body(
+        body_of_mass("box" + std::to_string(i), Box{Vec3(0.5, 0.5, 0.5)}, 1.0, Vec3(0, 0, 0.5 + i)));
   }
   return world;
 }

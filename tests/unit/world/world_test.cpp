@@ -37,10 +37,12 @@ TEST(World, AWrongFieldIsNamedWithItsValueAndNothingIsCreated) {
   EXPECT_EQ(refusal([&] { world.create_body(bad); }), "name: must have 1..63 characters ('')");
   bad = good;
   bad.geometries.clear();
-  EXPECT_EQ(refusal([&] { world.create_body(bad); }), "inertia: a body that moves needs an inertia or a geometry");
+  EXPECT_EQ(refusal([&] { world.create_body(bad); }),
+            "inertia: a body that moves needs an inertia or a geometry");
   bad = good;
   bad.X_WL.q = Quat(2, 0, 0, 0);
-  EXPECT_EQ(refusal([&] { world.create_body(bad); }), "pose: quaternion must have length 1 (squared length 4)");
+  EXPECT_EQ(refusal([&] { world.create_body(bad); }),
+            "pose: quaternion must have length 1 (squared length 4)");
   bad = good;
   bad.geometries[0].shape = HalfSpace{};
   EXPECT_EQ(refusal([&] { world.create_body(bad); }),
@@ -82,8 +84,10 @@ TEST(World, APushIsRefusedWhenNonFiniteHugeOrOnAStaticBody) {
   const BodyId floor = world.create_body(ground());
   EXPECT_EQ(refusal([&] { world.push({.body = ball, .force = Vec3(0, INFINITY, 0)}); }),
             "force: must be finite (0 inf 0)");
-  EXPECT_EQ(refusal([&] { world.push({.body = ball, .torque = Vec3(1e16, 0, 0)}); }), "torque: must be 0..1000000000000000 (1e+16)");
-  EXPECT_EQ(refusal([&] { world.push({.body = floor}); }), "body: only a dynamic body can be pushed ('ground')");
+  EXPECT_EQ(refusal([&] { world.push({.body = ball, .torque = Vec3(1e16, 0, 0)}); }),
+            "torque: must be 0..1000000000000000 (1e+16)");
+  EXPECT_EQ(refusal([&] { world.push({.body = floor}); }),
+            "body: only a dynamic body can be pushed ('ground')");
   world.step();
   EXPECT_TRUE(world.motion(ball.index).v.isZero(0.0));
 }
@@ -180,7 +184,8 @@ TEST(World, ACopyIsASnapshotThatGoesOnWithTheSameBits) {
   World world;
   world.create_body(ground());
   for (int i = 0; i < 5; ++i) {
-    world.create_body(body("box" + std::to_string(i), Box{Vec3(0.5, 0.5, 0.5)}, Vec3(0.02 * i, 0, 0.55 + 1.05 * i)));
+    world.create_body(
+        body("box" + std::to_string(i), Box{Vec3(0.5, 0.5, 0.5)}, Vec3(0.02 * i, 0, 0.55 + 1.05 * i)));
   }
   run(world, 60);
   World snapshot = world;

@@ -30,6 +30,16 @@ CLI::Validator known_name(FromName from_name, const std::string& names) {
       names);
 }
 
+/// The names of the rivals from the first to `last`.
+template <typename Rival>
+std::string join_names(const char* (*name_of)(Rival), Rival last) {
+  std::string names;
+  for (int i = 0; i <= static_cast<int>(last); ++i) {
+    names.append(i == 0 ? "" : ", ").append(name_of(static_cast<Rival>(i)));
+  }
+  return names;
+}
+
 CLI::Validator number_within(double low, double high) {
   return CLI::Range(low, high);
 }
@@ -75,12 +85,12 @@ void add_options(CLI::App& app, Arguments& a, Names& names) {
   app.add_option("--world", a.world_name, "Prefix of the channels (default TUMBLE)")->check(world_name());
   app.add_option("--lcm-url", a.lcm_url,
                  "Bus (default: LCM_DEFAULT_URL, else udpm://239.255.76.67:7667?ttl=0)");
-  app.add_option("--accuracy", names.accuracy, "Budgets and tolerances (default balanced)")
+  app.add_option("--accuracy", names.accuracy, "Budgets and tolerances (default: the scene's)")
       ->check(known_name(accuracy_from_name, "fast, balanced, exact"));
-  app.add_option("--integrator", names.integrator, "How bodies move through a step (default taylor8)")
-      ->check(known_name(integrator_from_name, "course, semi_implicit_euler, rk4, taylor8"));
-  app.add_option("--solver", names.solver, "How contacts are solved (default pgs)")
-      ->check(known_name(solver_from_name, "course_impulse, pgs, soft_step"));
+  app.add_option("--integrator", names.integrator, "How bodies move through a step (default: the scene's)")
+      ->check(known_name(integrator_from_name, join_names(integrator_name, Integrator::taylor8)));
+  app.add_option("--solver", names.solver, "How contacts are solved (default: the scene's)")
+      ->check(known_name(solver_from_name, join_names(solver_name, Solver::automatic)));
   app.add_option("--dt", a.time_step, "Time step in seconds (default: the scene's, else 1/240)")
       ->check(number_within(1e-6, 0.1));
   app.add_option("--summary", names.summary, "Form of the summary at the end: text (stderr) or json (stdout)")

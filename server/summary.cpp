@@ -33,6 +33,8 @@ Json counters_json(const Counters& c) {
       {"islands_accepted", c.islands_accepted},
       {"islands_free", c.islands_free},
       {"sweeps", c.sweeps},
+      {"solver_iterations", c.solver_iterations},
+      {"solver_fallbacks", c.solver_fallbacks},
       {"impacts", c.impacts},
       {"impacts_capped", c.impacts_capped},
       {"rests", c.rests},

@@ -13,28 +13,26 @@ ClientHistory::Client& ClientHistory::find_or_make(std::int64_t client) {
       return a.second.heard < b.second.heard;
     }));
   }
-  Client& added = clients_[client];
-  added.window.resize(static_cast<std::size_t>(kSequenceWindow));
-  return added;
+  return clients_[client];
 }
 
 ClientHistory::Novelty ClientHistory::enter(std::int64_t client, std::int64_t sequence) {
   Client& known = find_or_make(client);
   known.heard = ++arrivals_;
-  // Both are >= 0, so the difference cannot overflow.
-  if (known.highest - sequence >= kSequenceWindow) return Novelty::too_old;
-  Entry& entry = known.window[static_cast<std::size_t>(sequence % kSequenceWindow)];
-  if (entry.sequence == sequence) return Novelty::repeated;
-  entry = {sequence, {.status = Status::queued}};
-  known.highest = std::max(known.highest, sequence);
+  std::map<std::int64_t, Outcome>& outcomes = known.outcomes;
+  // Sequences are > 0, so no difference can overflow.
+  if (!outcomes.empty() && outcomes.rbegin()->first - sequence >= kSequenceWindow) return Novelty::too_old;
+  if (!outcomes.try_emplace(sequence, Outcome{.status = Status::queued}).second) return Novelty::repeated;
+  while (outcomes.rbegin()->first - outcomes.begin()->first >= kSequenceWindow)
+    outcomes.erase(outcomes.begin());
   return Novelty::fresh;
 }
 
 Outcome* ClientHistory::find(std::int64_t client, std::int64_t sequence) {
   const auto known = clients_.find(client);
   if (known == clients_.end()) return nullptr;
-  Entry& entry = known->second.window[static_cast<std::size_t>(sequence % kSequenceWindow)];
-  return entry.sequence == sequence ? &entry.outcome : nullptr;
+  const auto entry = known->second.outcomes.find(sequence);
+  return entry == known->second.outcomes.end() ? nullptr : &entry->second;
 }
 
 }  // namespace tumble

@@ -4,7 +4,6 @@
 
 #include <cstdint>
 #include <map>
-#include <vector>
 
 #include "net/acknowledgement.h"
 
@@ -23,14 +22,9 @@ class ClientHistory {
   std::size_t size() const { return clients_.size(); }
 
  private:
-  struct Entry {
-    std::int64_t sequence = 0;  // 0: empty
-    Outcome outcome;
-  };
   struct Client {
-    std::int64_t highest = 0;
-    std::uint64_t heard = 0;    // by order of arrival
-    std::vector<Entry> window;  // at sequence modulo kSequenceWindow
+    std::uint64_t heard = 0;                   // by order of arrival
+    std::map<std::int64_t, Outcome> outcomes;  // by sequence; none older than the window behind the highest
   };
   Client& find_or_make(std::int64_t client);
 

@@ -24,7 +24,7 @@ struct SolverSettings {
   double tolerance = 1e-8;
   int sub_steps = 4;            ///< soft_step.
   int exact_bodies = 60;        ///< automatic: largest island, in movable bodies, that is solved exactly.
-  Vec3 gravity = Vec3::Zero();  ///< [m/s^2]; course_impulse tells microcollisions by it.
+  Vec3 gravity = Vec3::Zero();  ///< [m/s^2]; exact tells implausible impulses by it.
 };
 
 struct SolverReport {

@@ -17,10 +17,13 @@ void for_each_option(OptionsType& options, Visit&& visit) {
   visit("use_motion_bound", options.narrow_phase.use_motion_bound);
   visit("use_cached_axis", options.narrow_phase.use_cached_axis);
   visit("use_gjk", options.narrow_phase.use_gjk);
+  visit("use_cached_facet", options.narrow_phase.use_cached_facet);
   visit("max_sweeps", options.solver_settings.max_sweeps);
   visit("tolerance", options.solver_settings.tolerance);
   visit("sub_steps", options.solver_settings.sub_steps);
+  visit("exact_bodies", options.solver_settings.exact_bodies);
   visit("slop", options.bounds.slop);
+  visit("sweep_slop", options.sweep_slop);
   visit("push_fraction", options.bounds.push_fraction);
   visit("push_speed", options.bounds.push_speed);
   visit("restitution_threshold", options.restitution_threshold);

@@ -42,12 +42,10 @@ void World::advance_free(std::uint32_t slot, const StepContext& step) {
 void World::advance_connected(std::size_t island, const StepContext& step) {
   build_problem(island, step);
   ContactProblem& problem = scratch_.problem;
-  prepare(problem, options_.bounds);
-  const ImpactReport impacts = resolve_impacts(
-      problem, {.threshold_speed = options_.restitution_threshold, .max_impacts = options_.max_impacts});
+  prepare(problem, step.bounds);
+  // The slides' solver bounces as taught, inside its own passes.
+  if (options_.solver != Solver::course_impulse) bounce(problem);
   const SolverReport solved = step.solve(problem, step.solver_settings);
-  counters_.impacts += impacts.impacts;
-  counters_.impacts_capped += impacts.capped;
   counters_.sweeps += static_cast<std::uint64_t>(solved.sweeps);
   counters_.solver_iterations += static_cast<std::uint64_t>(solved.iterations);
   counters_.solver_fallbacks += solved.fallback ? 1 : 0;
@@ -56,6 +54,13 @@ void World::advance_connected(std::size_t island, const StepContext& step) {
   store_impulses();
   if (try_rest(solved.residual)) return;
   move_bodies(step);
+}
+
+void World::bounce(ContactProblem& problem) {
+  const ImpactReport report = resolve_impacts(
+      problem, {.threshold_speed = options_.restitution_threshold, .max_impacts = options_.max_impacts});
+  counters_.impacts += report.impacts;
+  counters_.impacts_capped += report.capped;
 }
 
 void World::build_problem(std::size_t island, const StepContext& step) {

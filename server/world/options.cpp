@@ -43,6 +43,7 @@ std::string check_options(const Options& options) {
       {"contact margin", options.contact_margin, 0.0, 1.0},
       {"fat margin", options.fat_margin, 0.0, 10.0},
       {"slop", options.bounds.slop, 0.0, 1.0},
+      {"sweep slop", options.sweep_slop, 0.0, 1.0},
       {"push fraction", options.bounds.push_fraction, 0.0, 1.0},
       {"push speed", options.bounds.push_speed, 0.0, 1e3},
       {"restitution threshold", options.restitution_threshold, 0.0, 1e3},

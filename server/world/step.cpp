@@ -14,8 +14,12 @@ void World::step(const std::function<void(Stage)>& stage_done) {
   StepContext step{.h = options_.time_step,
                    .integrate = integrate_function(options_.integrator),
                    .solve = solve_function(options_.solver),
-                   .solver_settings = options_.solver_settings};
+                   .solver_settings = options_.solver_settings,
+                   .bounds = options_.bounds};
   step.solver_settings.gravity = options_.gravity;
+  if (options_.solver == Solver::pgs || options_.solver == Solver::nncg) {
+    step.bounds.slop = std::max(step.bounds.slop, options_.sweep_slop);
+  }
   apply_pushes(step);
   stage_done(Stage::commands);
   update_broad_phase(step);

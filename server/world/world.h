@@ -131,6 +131,7 @@ class World {
     IntegrateFunction integrate;
     SolveFunction solve;
     SolverSettings solver_settings;
+    BoundSettings bounds;
   };
 
   // world.cpp: slots and links.
@@ -164,6 +165,7 @@ class World {
   // island_step.cpp: one island through one step.
   void advance_free(std::uint32_t slot, const StepContext& step);
   void advance_connected(std::size_t island, const StepContext& step);
+  void bounce(ContactProblem& problem);
   void build_problem(std::size_t island, const StepContext& step);
   std::uint32_t problem_body(std::uint32_t slot, double h);
   void add_contact_rows(std::uint32_t contact_index, double h);

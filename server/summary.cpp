@@ -79,16 +79,18 @@ std::string summary_json(const World& world, const RunTimes& times) {
 std::string summary_text(const World& world, const RunTimes& times) {
   const Conserved sums = world.compute_conserved();
   const StepReport& report = world.report();
+  const auto steps = static_cast<double>(times.steps);
+  const double dt = world.options().time_step;
   return fmt::format(
-      "{} steps of {:g} s ({:g} s simulated) in {:.3f} s of wall time, {:.3f} s of processor time: {:.4f} ms "
+      "{} steps of {:g} s ({:g} s simulated) in {:.3f} s of wall time; {:.3f} s of processor time, {:.4f} ms "
       "a step\n"
       "{} bodies, {} awake, {} resting; {} contacts, deepest penetration {:.3g} m\n"
       "kinetic energy {:.9g} J, potential {:.9g} J, momentum ({:.6g}, {:.6g}, {:.6g}) N s\n"
       "state hash {:016x}",
-      times.steps, world.options().time_step, world.time(), times.wall_s, times.cpu_s, ms_per_step(times),
-      world.body_count(), report.bodies_awake, report.bodies_resting, report.contacts,
-      report.deepest_penetration, sums.kinetic_energy, sums.potential_energy, sums.momentum.x(),
-      sums.momentum.y(), sums.momentum.z(), world.state_hash());
+      times.steps, dt, steps * dt, times.wall_s, times.cpu_s,
+      times.steps > 0 ? 1e3 * times.cpu_s / steps : 0.0, world.body_count(), report.bodies_awake,
+      report.bodies_resting, report.contacts, report.deepest_penetration, sums.kinetic_energy,
+      sums.potential_energy, sums.momentum.x(), sums.momentum.y(), sums.momentum.z(), world.state_hash());
 }
 
 double cpu_seconds() {

@@ -17,6 +17,7 @@ struct RunTimes {
 
 /// One line of JSON. deepest_penetration, max_residual and contacts are of the last step; worst_* over the run.
 std::string summary_json(const World& world, const RunTimes& times);
+/// For people. Steps and times are of the whole run, over all resets; a step's time is processor time.
 std::string summary_text(const World& world, const RunTimes& times);
 
 /// Processor time of this process so far, all threads [s].

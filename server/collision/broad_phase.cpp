@@ -69,11 +69,6 @@ const Aabb& BroadPhase::fat_bounds(std::uint32_t index) const {
   return tree_of(proxy).bounds(proxy.leaf);
 }
 
-void BroadPhase::set_fat_bounds(std::uint32_t index, const Aabb& fat) {
-  const Proxy& proxy = proxies_[index];
-  tree_of(proxy).move(proxy.leaf, fat);
-}
-
 void BroadPhase::query(const Aabb& bounds, std::vector<std::uint32_t>& indices) const {
   const auto first = static_cast<std::ptrdiff_t>(indices.size());
   moving_.query(bounds, indices);

@@ -35,8 +35,6 @@ class BroadPhase {
   bool overlaps(GeometryPair pair) const;
 
   const Aabb& fat_bounds(std::uint32_t index) const;
-  /// Restores a fat box as a snapshot recorded it.
-  void set_fat_bounds(std::uint32_t index, const Aabb& fat);
 
   /// Appends every geometry whose fat box overlaps `bounds`, in ascending order.
   void query(const Aabb& bounds, std::vector<std::uint32_t>& indices) const;

@@ -1,47 +1,30 @@
 // See integrator.h: the table of rivals, and what they share.
 #include "dynamics/integrator.h"
 
-#include <array>
-#include <cassert>
+#include "dynamics/rival.h"
 
 namespace tumble {
 namespace {
 
-struct Rival {
-  Integrator integrator;
-  const char* name;
-  IntegrateFunction integrate;
-};
-
-/// In the order of the enum.
-constexpr std::array<Rival, 4> kRivals = {{
+constexpr std::array<Rival<Integrator, IntegrateFunction>, 4> kRivals = {{
     {Integrator::course, "course", integrate_course},
     {Integrator::semi_implicit_euler, "semi_implicit_euler", integrate_semi_implicit_euler},
     {Integrator::rk4, "rk4", integrate_rk4},
     {Integrator::taylor8, "taylor8", integrate_taylor8},
 }};
 
-const Rival& rival(Integrator integrator) {
-  const Rival& found = kRivals[static_cast<std::size_t>(integrator)];
-  assert(found.integrator == integrator);
-  return found;
-}
-
 }  // namespace
 
 IntegrateFunction integrate_function(Integrator integrator) {
-  return rival(integrator).integrate;
+  return rival(kRivals, integrator).function;
 }
 
 const char* integrator_name(Integrator integrator) {
-  return rival(integrator).name;
+  return rival(kRivals, integrator).name;
 }
 
 std::optional<Integrator> integrator_from_name(std::string_view name) {
-  for (const Rival& rival : kRivals) {
-    if (name == rival.name) return rival.integrator;
-  }
-  return std::nullopt;
+  return kind_from_name(kRivals, name);
 }
 
 void set_end_of_step(const MassProperties& mass, const VelocityPath& path, const Quat& q_WB, Motion& body) {

@@ -1,18 +1,12 @@
 // The names of the solvers and their dispatch.
 #include "dynamics/solver.h"
 
-#include <array>
+#include "dynamics/rival.h"
 
 namespace tumble {
 namespace {
 
-struct Rival {
-  Solver solver;
-  const char* name;
-  SolveFunction solve;
-};
-
-constexpr std::array<Rival, 6> kRivals{{
+constexpr std::array<Rival<Solver, SolveFunction>, 6> kRivals{{
     {Solver::course_impulse, "course_impulse", &solve_course_impulse},
     {Solver::pgs, "pgs", &solve_pgs},
     {Solver::nncg, "nncg", &solve_nncg},
@@ -21,27 +15,18 @@ constexpr std::array<Rival, 6> kRivals{{
     {Solver::automatic, "automatic", &solve_automatic},
 }};
 
-const Rival& rival(Solver solver) {
-  return kRivals[static_cast<std::size_t>(solver)];
-}
-
-static_assert(kRivals[static_cast<std::size_t>(Solver::automatic)].solver == Solver::automatic);
-
 }  // namespace
 
 SolveFunction solve_function(Solver solver) {
-  return rival(solver).solve;
+  return rival(kRivals, solver).function;
 }
 
 const char* solver_name(Solver solver) {
-  return rival(solver).name;
+  return rival(kRivals, solver).name;
 }
 
 std::optional<Solver> solver_from_name(std::string_view name) {
-  for (const Rival& r : kRivals) {
-    if (name == r.name) return r.solver;
-  }
-  return std::nullopt;
+  return kind_from_name(kRivals, name);
 }
 
 }  // namespace tumble

@@ -12,6 +12,16 @@ const Contact* ContactGraph::find(GeometryPair pair) const {
   return it != contacts_.end() && it->pair == pair ? &*it : nullptr;
 }
 
+void ContactGraph::remove(const std::vector<std::uint32_t>& indices) {
+  auto gone = indices.begin();
+  std::uint32_t index = 0;
+  std::erase_if(contacts_, [&](const Contact&) {
+    if (gone == indices.end() || *gone != index++) return false;
+    ++gone;
+    return true;
+  });
+}
+
 void ContactGraph::merge_incoming() {
   const auto middle = static_cast<std::ptrdiff_t>(contacts_.size());
   contacts_.insert(contacts_.end(), incoming_.begin(), incoming_.end());

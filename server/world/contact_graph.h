@@ -39,6 +39,9 @@ class ContactGraph {
     return static_cast<std::size_t>(std::erase_if(contacts_, gone));
   }
 
+  /// Removes the contacts at `indices`, ascending.
+  void remove(const std::vector<std::uint32_t>& indices);
+
   const Contact* find(GeometryPair pair) const;
   std::vector<Contact>& all() { return contacts_; }
   const std::vector<Contact>& all() const { return contacts_; }

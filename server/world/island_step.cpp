@@ -68,6 +68,7 @@ void World::build_problem(std::size_t island, const StepContext& step) {
   scratch_.problem.clear();
   scratch_.problem.h = step.h;
   scratch_.problem_slot.clear();
+  scratch_.after_forces.clear();
   scratch_.contact_source.clear();
   scratch_.row_source.clear();
   for (std::uint32_t i = islands.body_begin[island]; i < islands.body_begin[island + 1]; ++i) {
@@ -104,9 +105,10 @@ std::uint32_t World::problem_body(std::uint32_t slot, double h) {
   const MassProperties& mass = masses_[slot];
   body.inv_mass = mass.inv_mass;
   body.inv_I_W = world_inertia(mass.inv_I, mass.q_BP, motion.q);
-  Vec3 L;
-  velocities_after_forces(slot, h, body.v, L);
-  body.w = body.inv_I_W * L;
+  Scratch::AfterForces& after = scratch_.after_forces.emplace_back();
+  velocities_after_forces(slot, h, body.v, after.L);
+  after.I_W = world_inertia(mass.I, mass.q_BP, motion.q);
+  body.w = body.inv_I_W * after.L;
   return index;
 }
 
@@ -209,14 +211,12 @@ void World::move_bodies(const StepContext& step) {
     Motion& motion = motions_[slot];
     const Motion last_good = motion;
     // Momentum after the forces plus what the impulses changed, so that a body no impulse met keeps its bits.
-    Vec3 v_forces, L_forces;
-    velocities_after_forces(slot, step.h, v_forces, L_forces);
-    const Mat3 I_W = world_inertia(mass.I, mass.q_BP, motion.q);
-    const Vec3 L1 = L_forces + I_W * (solved.w - solved.inv_I_W * L_forces);
+    const Scratch::AfterForces& after = scratch_.after_forces[i];
+    const Vec3 L1 = after.L + after.I_W * (solved.w - solved.inv_I_W * after.L);
     VelocityPath path{.v0 = solved.v, .v1 = solved.v, .L0 = L1, .L1 = L1};
     if (problem.drift == ContactProblem::Drift::average) {
       path.v0 = solved.v0;
-      path.L0 = motion.L + I_W * (solved.w0 - motion.w);
+      path.L0 = motion.L + after.I_W * (solved.w0 - motion.w);
     }
     step.integrate(mass, path, step.h, motion);
     motion.x += solved.shift;

@@ -1,6 +1,7 @@
 // The step, as a table of contents, and its stages up to the islands. World frame, SI units.
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "world/world.h"
 
@@ -93,11 +94,11 @@ void World::update_broad_phase(const StepContext& step) {
     const std::uint32_t b = geometries_[pair.b].body;
     return a == b || !(movable(a) || movable(b));
   });
-  const auto lost = [this](std::uint32_t index) {
-    return !broad_phase_.overlaps(contacts_.all()[index].pair);
-  };
-  if (std::any_of(active_contacts_.begin(), active_contacts_.end(), lost)) {
-    contacts_.remove_if([this](const Contact& contact) { return !broad_phase_.overlaps(contact.pair); });
+  scratch_.lost.clear();
+  std::copy_if(active_contacts_.begin(), active_contacts_.end(), std::back_inserter(scratch_.lost),
+               [this](std::uint32_t index) { return !broad_phase_.overlaps(contacts_.all()[index].pair); });
+  if (!scratch_.lost.empty()) {
+    contacts_.remove(scratch_.lost);
     active_stale_ = true;
   }
   if (contacts_.insert(scratch_.pairs, [this](GeometryPair pair) { return make_contact(pair); }) > 0) {

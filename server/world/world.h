@@ -112,6 +112,7 @@ class World {
     std::vector<Vec3> force, torque;  // by slot, zero between steps
     std::vector<std::uint32_t> forced;
     std::vector<GeometryPair> pairs;
+    std::vector<std::uint32_t> lost;  // contacts whose boxes came apart, ascending
     std::vector<IslandEdge> edges;
     std::vector<std::uint32_t> edge_source;  // contact index, or contacts().size() + tie index
     IslandBuilder builder;
@@ -124,6 +125,11 @@ class World {
     };
     std::vector<Source> contact_source;
     std::vector<std::uint32_t> row_source;
+    struct AfterForces {
+      Vec3 L;
+      Mat3 I_W;
+    };
+    std::vector<AfterForces> after_forces;  // of the problem's movable bodies, before the impulses
     std::uint32_t problem_movable = 0;  // the first bodies of the problem; the rest are immovable partners
   };
   struct StepContext {

@@ -4,25 +4,14 @@
 #include <cmath>
 #include <random>
 
-#include "dynamics/solver.h"
+#include "support/problem_builder.h"
 
 namespace tumble::test {
 
-constexpr double kG = 9.81;  // [m/s^2]
-
 /// A body at x whose velocity after one step of gravity from rest is v*. Mass 0: immovable.
 inline std::uint32_t add_body(ContactProblem& problem, double mass, const Vec3& inertia, const Vec3& x) {
-  SolverBody body;
-  body.x = x;
-  body.q = Quat::Identity();
-  body.v0 = body.w0 = body.w = body.v = Vec3::Zero();
-  body.inv_mass = mass > 0.0 ? 1.0 / mass : 0.0;
-  body.inv_I_W = Mat3::Zero();
-  if (mass > 0.0) {
-    body.inv_I_W = inertia.cwiseInverse().asDiagonal();
-    body.v = Vec3(0, 0, -kG * problem.h);
-  }
-  problem.bodies.push_back(body);
+  problem.bodies.push_back(mass > 0.0 ? moving_body(mass, inertia, x) : fixed_body(x));
+  if (mass > 0.0) problem.bodies.back().v = problem.h * kGravity;
   return static_cast<std::uint32_t>(problem.bodies.size() - 1);
 }
 
@@ -37,17 +26,7 @@ inline std::uint32_t add_sphere(ContactProblem& problem, double mass, double rad
 /// Contact at p (in W) with normal n from a to b.
 inline void add_contact(ContactProblem& problem, std::uint32_t a, std::uint32_t b, const Vec3& p,
                         const Vec3& n, double friction, double separation = 0.0) {
-  PointContact c;
-  c.a = a;
-  c.b = b;
-  c.n = n;
-  c.rA = p - problem.bodies[a].x;
-  c.rB = p - problem.bodies[b].x;
-  c.separation = separation;
-  c.friction = friction;
-  c.restitution = 0.0;
-  set_tangents(c);
-  problem.contacts.push_back(c);
+  problem.contacts.push_back(contact_at(problem, a, b, p, n, separation, friction));
 }
 
 /// The four corners of the horizontal overlap of two unit cubes, b on top of a (or of the ground).
@@ -67,7 +46,7 @@ inline void add_face_contact(ContactProblem& problem, std::uint32_t a, std::uint
 }
 
 inline void prepare_rigid(ContactProblem& problem) {
-  prepare(problem, {.slop = 0.0, .push_fraction = 0.2, .push_speed = 3.0});
+  prepare(problem, kNoSlop);
 }
 
 /// `count` unit cubes of 1 kg on each other with offsets of +-1 cm, the top one of another mass; body 0 is the ground.

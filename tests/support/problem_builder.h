@@ -11,7 +11,8 @@
 
 namespace tumble::test {
 
-inline const Vec3 kGravity(0.0, 0.0, -9.81);
+inline constexpr double kG = 9.81;  // [m/s^2]
+inline const Vec3 kGravity(0.0, 0.0, -kG);
 
 inline SolverBody fixed_body(const Vec3& x = Vec3::Zero()) {
   SolverBody body;

@@ -232,18 +232,6 @@ TEST(BroadPhase, CopyContinuesLikeTheOriginal) {
   EXPECT_EQ(original.phase.boxes_renewed(), copy.phase.boxes_renewed());
 }
 
-TEST(BroadPhase, ARestoredBoxAnswersAsRecorded) {
-  Crowd crowd(20, 0.1, 8);
-  const Aabb recorded = crowd.phase.fat_bounds(3);
-  for (int step = 0; step < 50; ++step) crowd.advance();
-  crowd.update();
-  crowd.phase.set_fat_bounds(3, recorded);
-  EXPECT_EQ(crowd.phase.fat_bounds(3).lower, recorded.lower);
-  EXPECT_EQ(crowd.phase.fat_bounds(3).upper, recorded.upper);
-  crowd.update();
-  EXPECT_TRUE(crowd.found.empty());  // the pairs belong to the snapshot, not to this call
-}
-
 TEST(BroadPhase, NoAllocationAfterWarmUp) {
   Crowd crowd(150, 0.1, 9);
   std::vector<GeometryPair> pairs;

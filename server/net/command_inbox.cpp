@@ -67,7 +67,8 @@ void CommandInbox::admit(const Message& message) {
   } else if (message.expiry_step != 0 && message.expiry_step < start) {
     outcome = {.status = Status::expired,
                .detail = fmt::format("it could act at step {} at the earliest", start)};
-  } else if (outcome.status == Status::applied && pending_.size() >= kMaxPending) {
+  } else if (outcome.status == Status::applied &&
+             pending_.size() >= (start > step_ ? kMaxWaiting : kMaxPending)) {
     outcome = {.status = Status::queue_full, .detail = fmt::format("{} commands wait", pending_.size())};
   }
   if (outcome.status != Status::applied) return settle(client, sequence, std::move(outcome));

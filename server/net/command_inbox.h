@@ -35,7 +35,10 @@ struct InboxCounters {
 
 class CommandInbox {
  public:
-  static constexpr std::size_t kMaxPending = 4096;
+  /// Commands in the queue up to which one that waits for a later step is accepted; one that acts at once has as much
+  /// room again, so that a client with plans cannot shut out the others.
+  static constexpr std::size_t kMaxWaiting = 4096;
+  static constexpr std::size_t kMaxPending = 2 * kMaxWaiting;
 
   /// Messages received from now on are for the session and act at `step` at the earliest.
   void set_now(std::int64_t session, std::int64_t step);

@@ -3,10 +3,11 @@ import math
 
 import pytest
 
-from wire import (APPLIED, EXPIRED, NOT_FINITE, OUT_OF_RANGE, QUEUED, STALE_GENERATION, UNKNOWN_BODY, UNKNOWN_VERB,
-                  WRONG_SESSION)
+from wire import (APPLIED, EXPIRED, NOT_FINITE, OUT_OF_RANGE, QUEUE_FULL, QUEUED, STALE_GENERATION, UNKNOWN_BODY,
+                  UNKNOWN_VERB, WRONG_SESSION)
 
 PUSH = (6.0, 0.0, 0.0)  # [N], for one step
+MAX_WAITING = 4096  # commands that wait for their step
 
 
 def ball_momentum(wire, ball):
@@ -115,3 +116,21 @@ def test_name_taken(free_bodies, wire):
     answer = wire.ask(wire.control(wire.verb("SPAWN"), name="ball", body_type=1, shape_type=1, size=(0.5, 0.0, 0.0),
                                    mass=1.0))
     assert answer.status > QUEUED and "ball" in answer.detail
+
+
+def test_a_full_queue_is_said_and_loses_nothing_that_was_accepted(free_bodies, wire):
+    ball = wire.bodies()["ball"]
+    start = wire.next("STATE").step + 1_000_000
+    waiting = [wire.force(body=ball[0], generation=ball[1], start_step=start) for _ in range(MAX_WAITING)]
+    for first in range(0, MAX_WAITING, 64):  # in portions that no socket drops
+        portion = waiting[first:first + 64]
+        for command in portion:
+            wire.send(command)
+        last = portion[-1]
+        wire.wait(lambda: wire.answers(last), what="the answer to a portion")
+    assert {answer.status for answer in wire.answers()} == {QUEUED}
+    assert len(wire.answers()) == MAX_WAITING
+    refused = wire.ask(wire.force(body=ball[0], generation=ball[1], start_step=start))
+    assert (refused.status, refused.detail) == (QUEUE_FULL, f"{MAX_WAITING} commands wait")
+    # Those that wait do not shut out what acts at once.
+    assert wire.ask(wire.force(body=ball[0], generation=ball[1], force=PUSH)).status == APPLIED

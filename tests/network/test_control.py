@@ -42,6 +42,25 @@ def test_step_does_exactly_so_many(free_bodies, wire):
     assert paused_step(wire) == before + 7
 
 
+def test_a_repeated_control_is_answered_again_and_done_once(free_bodies, wire):
+    do(wire, "PAUSE")
+    before = paused_step(wire)
+    spawn = wire.control(wire.verb("SPAWN"), name="new", body_type=1, shape_type=1, size=(0.5, 0.0, 0.0), mass=4.0)
+    step = wire.control(wire.verb("STEP"), count=7)
+    remove = wire.control(wire.verb("REMOVE"), body=wire.bodies()["ball"][0], generation=wire.bodies()["ball"][1])
+    for command in (spawn, step, remove):
+        for _ in range(3):
+            wire.send(command)
+        wire.wait(lambda: len(wire.answers(command)) >= 3, what="three answers")
+    wire.listen(1.2)
+    for command in (spawn, step, remove):
+        answers = wire.answers(command)
+        assert answers == [answers[0]] * 3 and answers[0].status == APPLIED, answers
+    assert paused_step(wire) == before + 7
+    bodies = wire.bodies()
+    assert "ball" not in bodies and bodies["new"][:2] == (wire.answers(spawn)[0].body, wire.answers(spawn)[0].generation)
+
+
 def test_reset_starts_again_with_the_same_bits(start, wire):
     start("--demo", "tumbling")
     wire.next("HEARTBEAT", 10.0)

@@ -12,7 +12,7 @@ TYPES = {"STATE": state_t, "STATS": stats_t, "CATALOG": catalog_t, "HEARTBEAT": 
 Answer = collections.namedtuple("Answer", "client sequence status applied_step body generation detail session")
 
 APPLIED, QUEUED, UNKNOWN_BODY, STALE_GENERATION, NOT_FINITE, OUT_OF_RANGE, EXPIRED, WRONG_SESSION = range(8)
-UNKNOWN_VERB, MALFORMED = 9, 13
+QUEUE_FULL, UNKNOWN_VERB, MALFORMED = 8, 9, 13
 
 
 class Wire:

@@ -194,7 +194,7 @@ TEST_F(Inbox, ResetCancelsWhatWaits) {
 }
 
 TEST_F(Inbox, TheQueueIsBounded) {
-  const auto limit = static_cast<std::int64_t>(CommandInbox::kMaxPending);
+  const auto limit = static_cast<std::int64_t>(CommandInbox::kMaxWaiting);
   for (std::int64_t i = 0; i <= limit; ++i) {
     force_command_t c = make_force(1 + i % 8, 1 + i / 8);
     c.start_step = 1000;
@@ -204,7 +204,22 @@ TEST_F(Inbox, TheQueueIsBounded) {
   ASSERT_EQ(answers.size(), static_cast<std::size_t>(limit) + 1);
   EXPECT_EQ(answers[answers.size() - 2].outcome.status, Status::queued);
   EXPECT_EQ(answers.back().outcome.status, Status::queue_full);
-  EXPECT_EQ(inbox_.pending(), CommandInbox::kMaxPending);
+  EXPECT_EQ(inbox_.pending(), CommandInbox::kMaxWaiting);
+}
+
+TEST_F(Inbox, CommandsThatWaitLeaveRoomForThoseThatActAtOnce) {
+  const auto limit = static_cast<std::int64_t>(CommandInbox::kMaxWaiting);
+  for (std::int64_t i = 0; i < limit; ++i) {
+    force_command_t c = make_force(1, 1 + i);
+    c.start_step = 1000;
+    send(c);
+  }
+  inbox_.take_answers();
+  for (std::int64_t i = 0; i <= limit; ++i) send(make_force(2, 1 + i));
+  const std::vector<Acknowledgement> refused = inbox_.take_answers();
+  ASSERT_EQ(refused.size(), 1u);
+  EXPECT_EQ(refused[0].outcome.status, Status::queue_full);
+  EXPECT_EQ(run(100).size(), static_cast<std::size_t>(limit));
 }
 
 TEST_F(Inbox, SequencesOlderThanTheWindowAreRefused) {

@@ -1,70 +1,85 @@
-// Polygon clipping for contact manifolds, in the frame of the reference face. Tolerances: ContactTolerance.
+// Polygon clipping for contact manifolds, in the plane of the reference face. Tolerances: ContactTolerance.
 #include "collision/clip.h"
+
+#include <cmath>
+
+#include "collision/feature_name.h"
 
 namespace tumble {
 namespace {
 
-/// Labels of reference sides start here; incident edges count from 0.
-constexpr std::uint32_t kSideLabel = 0x8000;
 /// Signed distances closer than this [m] have no crossing worth computing.
 constexpr double kNoCrossing = 1e-12;
 
-std::uint32_t meeting(std::uint32_t edge, std::uint32_t other) {
-  return edge < other ? (edge << 16 | other) : (other << 16 | edge);
-}
-
 }  // namespace
 
-void ClipPolygon::close() {
-  for (std::size_t i = 0; i < static_cast<std::size_t>(count_); ++i) {
-    const std::size_t before = i == 0 ? static_cast<std::size_t>(count_ - 1) : i - 1;
-    vertices_[i].id = meeting(vertices_[before].edge, vertices_[i].edge);
-    if (i == 0 || vertices_[i].p.z() < lowest_.p.z()) lowest_ = vertices_[i];
-  }
+void ClipPolygon::add_vertex(const Vec3& p, std::uint32_t vertex) {
+  Vertex& added = loops_[0][static_cast<std::size_t>(count_)];
+  added = {p, name_vertex(!reference_is_a_, vertex), vertex, vertex, false};
+  if (count_ > 0) loops_[0][static_cast<std::size_t>(count_ - 1)].head = vertex;
+  if (count_ == 0 || p.z() < lowest_.p.z()) lowest_ = added;
+  ++count_;
 }
 
-void ClipPolygon::cut(const ClipSide& side, std::uint32_t index, double tolerance) {
+void ClipPolygon::close() {
+  loops_[0][static_cast<std::size_t>(count_ - 1)].head = loops_[0][0].tail;
+}
+
+std::uint32_t ClipPolygon::name_meeting(const Vertex& edge, const ClipSide& side) const {
+  if (!edge.on_side) {
+    return reference_is_a_ ? name_crossing(side.tail, side.head, edge.tail, edge.head)
+                           : name_crossing(edge.tail, edge.head, side.tail, side.head);
+  }
+  // Two sides meet in the reference's vertex, unless all between them was cut away.
+  return name_vertex(reference_is_a_, edge.tail == side.head ? edge.tail : side.tail);
+}
+
+void ClipPolygon::cut(const ClipSide& side, double tolerance) {
   const std::size_t total = static_cast<std::size_t>(count_);
+  const Loop& vertices = loops_[static_cast<std::size_t>(current_)];
   std::array<double, kCapacity> distance;
   bool all_inside = true;
   for (std::size_t i = 0; i < total; ++i) {
-    const Vec3& p = vertices_[i].p;
+    const Vec3& p = vertices[i].p;
     distance[i] = side.nx * p.x() + side.ny * p.y() - side.offset;
     all_inside = all_inside && distance[i] <= tolerance;
   }
   if (all_inside) return;
 
-  const std::uint32_t label = kSideLabel + index;
-  std::array<Vertex, kCapacity> kept;
+  Loop& kept = loops_[static_cast<std::size_t>(1 - current_)];
   std::size_t n = 0;
   for (std::size_t i = 0; i < total; ++i) {
     const std::size_t j = i + 1 == total ? 0 : i + 1;
     const bool inside = distance[i] <= tolerance, next_inside = distance[j] <= tolerance;
-    if (inside) kept[n++] = vertices_[i];
+    if (inside) kept[n++] = vertices[i];
     if (inside == next_inside) continue;
     const double rise = distance[j] - distance[i];
     const bool crosses = distance[i] * distance[j] < 0.0 && std::abs(rise) > kNoCrossing;
     if (crosses && n < kept.size()) {
-      const Vec3 p = vertices_[i].p + (distance[i] / -rise) * (vertices_[j].p - vertices_[i].p);
-      kept[n++] = {p, meeting(vertices_[i].edge, label), inside ? label : vertices_[i].edge};
+      const Vec3 p = vertices[i].p + (distance[i] / -rise) * (vertices[j].p - vertices[i].p);
+      kept[n] = vertices[i];
+      kept[n].p = p;
+      kept[n].name = name_meeting(vertices[i], side);
+      if (inside) kept[n].tail = side.tail, kept[n].head = side.head, kept[n].on_side = true;
+      ++n;
     } else if (inside) {
-      kept[n - 1].edge = label;
+      kept[n - 1].tail = side.tail;
+      kept[n - 1].head = side.head;
+      kept[n - 1].on_side = true;
     }
   }
-  for (std::size_t i = 0; i < n; ++i) vertices_[i] = kept[i];
+  current_ = 1 - current_;
   count_ = static_cast<int>(n);
 }
 
-Manifold ClipPolygon::make_manifold(const FacePlane& plane, const Vec3& normal_A, double margin, double merge,
-                                    std::uint32_t faces) const {
+Manifold ClipPolygon::make_manifold(const FacePlane& plane, const Vec3& normal_A, double margin,
+                                    double merge) const {
   ManifoldBuilder builder(normal_A, margin, merge);
   for (std::size_t i = 0; i < static_cast<std::size_t>(count_); ++i) {
-    const Vertex& vertex = vertices_[i];
-    builder.add(plane.middle_A(vertex.p), vertex.p.z(), mix_features(vertex.id, faces));
+    const Vertex& vertex = loops_[static_cast<std::size_t>(current_)][i];
+    if (vertex.p.z() <= margin) builder.add(plane.middle_A(vertex.p), vertex.p.z(), vertex.name);
   }
-  if (builder.count() == 0) {
-    builder.add(plane.middle_A(lowest_.p), lowest_.p.z(), mix_features(lowest_.id, faces));
-  }
+  if (builder.count() == 0) builder.add(plane.middle_A(lowest_.p), lowest_.p.z(), lowest_.name);
   return builder.finish();
 }
 

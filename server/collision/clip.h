@@ -1,6 +1,6 @@
-// Face against face: the incident polygon is cut by the sides of the reference face (Sutherland-Hodgman) in the plane of
-// the reference face, and what is left becomes contact points. Rules: inside tolerance and merging as in
-// manifold_builder.h; the point lies in the middle of the gap; ids name the edges that meet in the point.
+// Face against face: the incident polygon is cut by the sides of the reference face (Sutherland-Hodgman), both seen along
+// the contact normal, and what is left becomes contact points. A point lies in the middle of its gap. Its id names what
+// meets in it, a vertex of A, a vertex of B, or an edge of each, and not who was cut by whom.
 #pragma once
 
 #include <array>
@@ -12,52 +12,60 @@ namespace tumble {
 /// Faces with more vertices are thinned to this many, always with the deepest vertex kept.
 inline constexpr int kMaxFaceVertices = 96;
 
-/// Plane of the reference face in A's frame: right-handed unit axes, n outward, and a point of the face [m].
+/// The reference face's plane in A's frame: right-handed unit axes, face normal f outward, a point of the face [m]. The
+/// contact normal n (unit, from the reference to the incident body) need not be f, only near it.
 struct FacePlane {
-  Vec3 origin_A, u_A, v_A, n_A;
+  Vec3 origin_A, u_A, v_A, f_A, n_A;
+
+  /// x, y: where the line through p along n meets the plane; z: the distance to there along n.
   Vec3 to_plane(const Vec3& p_A) const {
     const Vec3 d = p_A - origin_A;
-    return {u_A.dot(d), v_A.dot(d), n_A.dot(d)};
+    const double z = f_A.dot(d) / f_A.dot(n_A);
+    const Vec3 foot = d - z * n_A;
+    return {u_A.dot(foot), v_A.dot(foot), z};
   }
-  /// The middle between a point of the plane's frame and its foot on the plane, in A.
+  /// The middle between such a point and its foot on the plane, in A.
   Vec3 middle_A(const Vec3& p) const { return origin_A + p.x() * u_A + p.y() * v_A + (0.5 * p.z()) * n_A; }
 };
 
-/// One side of the reference face: inside is nx x + ny y <= offset, (nx, ny) unit.
+/// One side of the reference face, from vertex `tail` to `head`: inside is nx x + ny y <= offset, (nx, ny) unit.
 struct ClipSide {
   double nx, ny, offset;
+  std::uint32_t tail, head;
 };
 
-/// A convex polygon in the reference plane's frame (z = height above it).
+/// A convex polygon over the reference plane (z = gap along the normal).
 class ClipPolygon {
  public:
-  /// Vertices in loop order; vertex i starts edge i.
-  void add_vertex(const Vec3& p) {
-    vertices_[static_cast<std::size_t>(count_)] = {p, 0, static_cast<std::uint32_t>(count_)};
-    ++count_;
-  }
-  /// After the last vertex: names each vertex by its two edges and remembers the lowest.
+  explicit ClipPolygon(bool reference_is_a) : reference_is_a_(reference_is_a) {}
+  /// Vertices in loop order; `vertex` is its number in its body.
+  void add_vertex(const Vec3& p, std::uint32_t vertex);
+  /// After the last vertex.
   void close();
-  int count() const { return count_; }
-  const Vec3& point(int i) const { return vertices_[static_cast<std::size_t>(i)].p; }
 
-  /// Cuts away what is outside side number `index`.
-  void cut(const ClipSide& side, std::uint32_t index, double tolerance);
+  /// Cuts away what is further outside than `tolerance` [m].
+  void cut(const ClipSide& side, double tolerance);
 
-  /// Everything up to the margin as manifold with normal_A (from A to B); `faces` distinguishes the pair of faces. If
-  /// nothing lies over the reference face, the lowest vertex of the uncut polygon speaks for it.
-  Manifold make_manifold(const FacePlane& plane, const Vec3& normal_A, double margin, double merge,
-                         std::uint32_t faces) const;
+  /// Everything up to the margin as manifold with normal_A (from A to B). If nothing lies over the reference face, the
+  /// lowest vertex of the uncut polygon speaks for it.
+  Manifold make_manifold(const FacePlane& plane, const Vec3& normal_A, double margin, double merge) const;
 
  private:
   static constexpr int kCapacity = 2 * kMaxFaceVertices + 2;
   struct Vertex {
     Vec3 p;
-    std::uint32_t id, edge;  ///< Where it comes from; label of the edge that starts here.
+    std::uint32_t name;
+    std::uint32_t tail, head;  ///< Of the edge that starts here, as numbered in its body.
+    bool on_side;              ///< That edge is a side of the reference face.
   };
+  using Loop = std::array<Vertex, kCapacity>;
+  std::uint32_t name_meeting(const Vertex& edge, const ClipSide& side) const;
+
+  bool reference_is_a_;
   int count_ = 0;
   Vertex lowest_;
-  std::array<Vertex, kCapacity> vertices_;
+  int current_ = 0;  ///< Which of the two loops holds the polygon; the other one receives what a cut leaves.
+  std::array<Loop, 2> loops_;
 };
 
 }  // namespace tumble

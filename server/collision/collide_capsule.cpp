@@ -6,6 +6,7 @@
 
 #include "collision/axis_preference.h"
 #include "collision/clip.h"
+#include "collision/feature_name.h"
 #include "collision/polytope.h"
 #include "collision/segment_contact.h"
 #include "math/rotation.h"

@@ -3,12 +3,16 @@
 #include "collision/collide_polytope.h"
 
 #include "collision/clip.h"
+#include "collision/feature_name.h"
 #include "collision/facet_search.h"
 #include "collision/segment_contact.h"
 #include "math/rotation.h"
 
 namespace tumble {
 namespace {
+
+/// Cosine of 0.1 rad: as in collide_box_box.cpp, edges that cross under faces this flat to their axis keep the polygon.
+constexpr double kFlat = 0.995;
 
 /// A face and the pose of its body in A.
 struct PlacedFace {
@@ -19,10 +23,11 @@ struct PlacedFace {
 
   int count() const { return std::min(static_cast<int>(face.count), kMaxFaceVertices); }
   /// Vertex k of the loop, which is thinned to `count()` evenly spread ones from vertex `first` on.
-  Vec3 vertex_A(int k, std::size_t first) const {
+  Vec3 vertex_A(int k, std::size_t first) const { return R * body.vertices[index(k, first)] + p; }
+  std::uint32_t index(int k, std::size_t first) const {
     const auto loop = body.loop(face);
     const std::size_t step = static_cast<std::size_t>(k) * loop.size() / static_cast<std::size_t>(count());
-    return R * body.vertices[loop[(first + step) % loop.size()]] + p;
+    return loop[(first + step) % loop.size()];
   }
 };
 
@@ -36,58 +41,72 @@ std::size_t lowest_along(const PlacedFace& placed, const Vec3& n_A) {
   return lowest;
 }
 
-Manifold clip_faces(const PlacedFace& reference, const PlacedFace& incident, const Vec3& normal_A,
-                    double margin, std::uint32_t faces) {
+Manifold clip_faces(const PlacedFace& reference, const PlacedFace& incident, bool reference_is_a,
+                    const Vec3& normal_A, double margin) {
   FacePlane plane;
-  plane.n_A = reference.R * reference.face.normal;
+  plane.f_A = reference.R * reference.face.normal;
+  plane.n_A = reference_is_a ? normal_A : Vec3(-normal_A);
   plane.origin_A = reference.vertex_A(0, 0);
-  plane.u_A = direction_or(reference.vertex_A(1, 0) - plane.origin_A, perpendicular_to(plane.n_A));
-  plane.v_A = plane.n_A.cross(plane.u_A);
+  plane.u_A = direction_or(reference.vertex_A(1, 0) - plane.origin_A, perpendicular_to(plane.f_A));
+  plane.v_A = plane.f_A.cross(plane.u_A);
 
-  ClipPolygon polygon;
+  ClipPolygon polygon(reference_is_a);
   const bool thinned = incident.count() < static_cast<int>(incident.face.count);
   const std::size_t first = thinned ? lowest_along(incident, plane.n_A) : 0;
-  for (int k = 0; k < incident.count(); ++k) polygon.add_vertex(plane.to_plane(incident.vertex_A(k, first)));
+  for (int k = 0; k < incident.count(); ++k) {
+    polygon.add_vertex(plane.to_plane(incident.vertex_A(k, first)), incident.index(k, first));
+  }
   polygon.close();
 
   const double width =
       std::min(face_width(reference.body, reference.face), face_width(incident.body, incident.face));
   const ContactTolerance tolerance = ContactTolerance::of(width);
+  const auto corner = [&](int k) -> Vec3 {
+    const Vec3 d = reference.vertex_A(k, 0) - plane.origin_A;
+    return {plane.u_A.dot(d), plane.v_A.dot(d), 0.0};
+  };
   Vec3 tail = Vec3::Zero();
   for (int k = 0; k < reference.count(); ++k) {
-    const Vec3 head = plane.to_plane(reference.vertex_A((k + 1) % reference.count(), 0));
+    const int next = (k + 1) % reference.count();
+    const Vec3 head = corner(next);
     const double x = head.y() - tail.y(), y = tail.x() - head.x(), length = std::sqrt(x * x + y * y);
     if (length > 0.0) {
       const double nx = x / length, ny = y / length;
-      polygon.cut({nx, ny, nx * tail.x() + ny * tail.y()}, static_cast<std::uint32_t>(k), tolerance.inside);
+      polygon.cut({nx, ny, nx * tail.x() + ny * tail.y(), reference.index(k, 0), reference.index(next, 0)},
+                  tolerance.inside);
     }
     tail = head;
   }
-  return polygon.make_manifold(plane, normal_A, margin, tolerance.merge, faces);
+  return polygon.make_manifold(plane, normal_A, margin, tolerance.merge);
+}
+
+Manifold cross_edges(const PolytopePair& pair, const Facet& facet, double margin) {
+  const ConvexHull::Edge &edge_a = pair.a.edges[facet.a], &edge_b = pair.b.edges[facet.b];
+  const Vec3 &tail_a = pair.a.vertices[edge_a.tail], &head_a = pair.a.vertices[edge_a.head];
+  const Vec3 tail_b = pair.R_AB * pair.b.vertices[edge_b.tail] + pair.p_AB;
+  const Vec3 head_b = pair.R_AB * pair.b.vertices[edge_b.head] + pair.p_AB;
+  const Segment a{0.5 * (tail_a + head_a), 0.5 * (head_a - tail_a)};
+  const Segment b{0.5 * (tail_b + head_b), 0.5 * (head_b - tail_b)};
+  const double merge = ContactTolerance::of(std::min(a.reach.norm(), b.reach.norm())).merge;
+  return make_segment_manifold({a, 0.0}, {b, 0.0}, facet.normal_A, margin, merge,
+                               name_crossing(edge_a.tail, edge_a.head, edge_b.tail, edge_b.head));
 }
 
 Manifold make_manifold(const PolytopePair& pair, const Facet& facet, double margin) {
   const Mat3 identity = Mat3::Identity();
   const Vec3 zero = Vec3::Zero();
-  if (facet.kind == Facet::Kind::edges) {
-    const ConvexHull::Edge &edge_a = pair.a.edges[facet.a], &edge_b = pair.b.edges[facet.b];
-    const Vec3 &tail_a = pair.a.vertices[edge_a.tail], &head_a = pair.a.vertices[edge_a.head];
-    const Vec3 tail_b = pair.R_AB * pair.b.vertices[edge_b.tail] + pair.p_AB;
-    const Vec3 head_b = pair.R_AB * pair.b.vertices[edge_b.head] + pair.p_AB;
-    const Segment a{0.5 * (tail_a + head_a), 0.5 * (head_a - tail_a)},
-        b{0.5 * (tail_b + head_b), 0.5 * (head_b - tail_b)};
-    const double merge = ContactTolerance::of(std::min(a.reach.norm(), b.reach.norm())).merge;
-    return make_segment_manifold({a, 0.0}, {b, 0.0}, facet.normal_A, margin, merge,
-                                 mix_features(facet.a, facet.b, 1));
-  }
-  const bool of_a = facet.kind == Facet::Kind::face_a;
-  const std::uint32_t face_a = of_a ? facet.a : face_towards(pair.a, facet.normal_A);
-  const std::uint32_t face_b = of_a ? face_towards(pair.b, pair.R_AB.transpose() * -facet.normal_A) : facet.b;
+  const Vec3 towards_a_B = pair.R_AB.transpose() * -facet.normal_A;
+  const std::uint32_t face_a =
+      facet.kind == Facet::Kind::face_a ? facet.a : face_towards(pair.a, facet.normal_A);
+  const std::uint32_t face_b = facet.kind == Facet::Kind::face_b ? facet.b : face_towards(pair.b, towards_a_B);
+  const bool flat_a = pair.a.faces[face_a].normal.dot(facet.normal_A) > kFlat;
+  const bool flat_b = pair.b.faces[face_b].normal.dot(towards_a_B) > kFlat;
+  if (facet.kind == Facet::Kind::edges && !(flat_a && flat_b)) return cross_edges(pair, facet, margin);
   const PlacedFace a{pair.a, pair.a.faces[face_a], identity, zero};
   const PlacedFace b{pair.b, pair.b.faces[face_b], pair.R_AB, pair.p_AB};
-  const std::uint32_t faces = mix_features(face_a, face_b, of_a ? 2 : 3);
-  return of_a ? clip_faces(a, b, facet.normal_A, margin, faces)
-              : clip_faces(b, a, facet.normal_A, margin, faces);
+  const bool reference_is_a = facet.kind == Facet::Kind::face_a || flat_a;
+  return reference_is_a ? clip_faces(a, b, true, facet.normal_A, margin)
+                        : clip_faces(b, a, false, facet.normal_A, margin);
 }
 
 /// The facet of the last search if its lead (kept by the pipeline) still holds, else a new search.
@@ -102,13 +121,15 @@ FacetAnswer choose_facet(const PolytopePair& pair, double margin, const AxisPref
 }
 
 Manifold collide(const PolytopePair& pair, double margin, PairCache& cache) {
-  const AxisPreference preference = AxisPreference::of(std::min(pair.a.radius, pair.b.radius));
+  const double tie = 1e-15 * (pair.a.radius + pair.b.radius);
+  const AxisPreference preference{tie, tie};
   const FacetAnswer answer = choose_facet(pair, margin, preference, cache);
   cache.axis_A = answer.facet.normal_A;
   cache.gap = answer.facet.separation;
   cache.slack = 0.0;
   if (answer.facet.separation > margin) return {};
-  const Manifold manifold = make_manifold(pair, answer.facet, margin);
+  Manifold manifold = make_manifold(pair, answer.facet, margin);
+  if (answer.facet.separation <= 0.0) set_deepest(manifold, answer.facet.separation);
   // Apart, the lead is proven only if the facet's own features are the closest ones.
   for (std::size_t i = 0; i < static_cast<std::size_t>(manifold.count); ++i) {
     if (manifold.points[i].separation <= std::max(0.0, answer.facet.separation) + 1e-3 * preference.face) {

@@ -60,4 +60,13 @@ Manifold single_point(const Vec3& normal_A, const Vec3& p_A, double separation, 
   return manifold;
 }
 
+void set_deepest(Manifold& manifold, double separation) {
+  if (manifold.count == 0) return;
+  std::size_t lowest = 0;
+  for (std::size_t i = 1; i < static_cast<std::size_t>(manifold.count); ++i) {
+    if (manifold.points[i].separation < manifold.points[lowest].separation) lowest = i;
+  }
+  manifold.points[lowest].separation = separation;
+}
+
 }  // namespace tumble

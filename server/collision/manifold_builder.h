@@ -43,12 +43,7 @@ class ManifoldBuilder {
 Manifold single_point(const Vec3& normal_A, const Vec3& p_A, double separation, double margin,
                       std::uint32_t feature);
 
-/// Mixes ids of features into one that stays the same as long as all of them do.
-inline std::uint32_t mix_features(std::uint32_t a, std::uint32_t b, std::uint32_t c = 0) {
-  std::uint64_t h = (a * 0x9e3779b97f4a7c15ull) ^ (b * 0xc2b2ae3d27d4eb4full + 0x165667b19e3779f9ull) ^
-                    (c * 0xff51afd7ed558ccdull);
-  h = (h ^ (h >> 32)) * 0xd6e8feb86659fd93ull;
-  return static_cast<std::uint32_t>(h ^ (h >> 32));
-}
+/// Gives the lowest point this separation [m]: that of the axis, which clipping knows only up to its tolerances.
+void set_deepest(Manifold& manifold, double separation);
 
 }  // namespace tumble

@@ -16,7 +16,7 @@ struct NarrowPhaseOptions {
   bool use_cached_axis = true;   ///< Off: no early end on last step's separating axis.
   bool use_cached_facet =
       true;             ///< Off: every contact of hulls is searched afresh instead of kept while it leads.
-  bool use_gjk = true;  ///< Off: straight to the exact features (same contacts, other cost).
+  bool use_gjk = true;  ///< Off: straight to the exact features (same contacts, other cost), as boxes always go.
 };
 
 struct NarrowPhaseCounters {
@@ -30,5 +30,12 @@ struct NarrowPhaseCounters {
 /// are further apart. Finite for any finite input; deterministic in (shapes, poses, cache).
 Manifold collide(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB, double margin,
                  const NarrowPhaseOptions& options, PairCache& cache, NarrowPhaseCounters& counters);
+
+/// B in A. The difference of positions comes first: far from the origin it is exact, products with it are not.
+Pose relative_pose(const Pose& X_WA, const Pose& X_WB);
+
+/// What is said of (A, B) in A, said of (B, A) in B. Of `collide(A, B)` and `collide(B, A)`, each with a new memory, one
+/// is the other turned round by this, to the bit.
+void swap_shapes(Manifold& manifold, const Pose& X_AB);
 
 }  // namespace tumble

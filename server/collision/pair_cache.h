@@ -8,8 +8,11 @@
 
 namespace tumble {
 
-/// Frame A is the frame of the shape that comes first in the pair matrix of narrow_phase.cpp.
+/// Frame A is the frame of the shape that is computed first: by the pair matrix of narrow_phase.cpp or, in pairs of one
+/// type, by `order`. A memory belongs to one pair, always asked for in the same order.
 struct PairCache {
+  enum class Order : std::uint8_t { open, forwards, backwards };
+
   Vec3 axis_A = Vec3::Zero();  ///< Last separating axis, from A to B, unit; zero: none yet.
   double gap = 0.0;            ///< Certified lower bound of the distance at the pose below [m]; <= 0: none.
   double slack = 0.0;        ///< Lead of the winning facet over all others at the pose below [m]; <= 0: none.
@@ -17,6 +20,7 @@ struct PairCache {
   Quat q_AB = Quat::Identity();
   std::uint32_t feature = 0;                 ///< Facet that won the last exact search; 0: none.
   std::uint32_t vertex_A = 0, vertex_B = 0;  ///< Start of hill climbing on hulls.
+  Order order = Order::open;                 ///< Of two shapes of one type: as asked, or turned round.
 };
 
 }  // namespace tumble

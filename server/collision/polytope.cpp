@@ -4,7 +4,7 @@
 
 #include <limits>
 
-#include "collision/manifold_builder.h"
+#include "collision/feature_name.h"
 #include "collision/segment.h"
 
 namespace tumble {

@@ -1,6 +1,7 @@
 // Closest points, or the two ends of the common part, of segments; all in A's frame. See segment_contact.h.
 #include "collision/segment_contact.h"
 
+#include "collision/feature_name.h"
 #include "collision/manifold_builder.h"
 
 namespace tumble {
@@ -17,7 +18,7 @@ Manifold make_segment_manifold(const RoundedSegment& a, const RoundedSegment& b,
   const auto add = [&](const Vec3& p_a, const Vec3& p_b, std::uint32_t index) {
     const double separation = normal_A.dot(p_b - p_a) - a.radius - b.radius;
     const Vec3 middle = 0.5 * (p_a + p_b) + (0.5 * (a.radius - b.radius)) * normal_A;
-    builder.add(middle, separation, mix_features(feature, index));
+    builder.add(middle, separation, index == 0 ? feature : mix_features(feature, index));
   };
   const double aa = a.core.reach.squaredNorm(), bb = b.core.reach.squaredNorm();
   if (a.core.reach.cross(b.core.reach).squaredNorm() >= kSideBySide * aa * bb) {

@@ -110,32 +110,22 @@ Manifold make_manifold(const PolytopePair& pair, const Facet& facet, double marg
 }
 
 /// The facet of the last search if its lead (kept by the pipeline) still holds, else a new search.
-FacetAnswer choose_facet(const PolytopePair& pair, double margin, const AxisPreference& preference,
-                         PairCache& cache) {
+FacetAnswer choose_facet(const PolytopePair& pair, double margin, PairCache& cache) {
   if (cache.slack > 0.0) {
     const Facet facet = recall_facet(pair, cache);
-    if (facet.kind != Facet::Kind::none && facet.separation + preference.face < margin)
-      return {facet, cache.slack};
+    if (facet.kind != Facet::Kind::none && facet.separation < margin) return {facet, cache.slack};
   }
-  return find_facet(pair, margin, preference, cache);
+  return find_facet(pair, margin, cache);
 }
 
 Manifold collide(const PolytopePair& pair, double margin, PairCache& cache) {
-  const double tie = 1e-15 * (pair.a.radius + pair.b.radius);
-  const AxisPreference preference{tie, tie};
-  const FacetAnswer answer = choose_facet(pair, margin, preference, cache);
+  const FacetAnswer answer = choose_facet(pair, margin, cache);
   cache.axis_A = answer.facet.normal_A;
   cache.gap = answer.facet.separation;
-  cache.slack = 0.0;
+  cache.slack = answer.lead;
   if (answer.facet.separation > margin) return {};
   Manifold manifold = make_manifold(pair, answer.facet, margin);
   if (answer.facet.separation <= 0.0) set_deepest(manifold, answer.facet.separation);
-  // Apart, the lead is proven only if the facet's own features are the closest ones.
-  for (std::size_t i = 0; i < static_cast<std::size_t>(manifold.count); ++i) {
-    if (manifold.points[i].separation <= std::max(0.0, answer.facet.separation) + 1e-3 * preference.face) {
-      cache.slack = answer.lead;
-    }
-  }
   return manifold;
 }
 

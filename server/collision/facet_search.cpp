@@ -1,9 +1,11 @@
 // Exhaustive search with pruning. Any point of A with any point of B bounds the separation along a direction from above,
-// so most facets fall at the first vertex tried. Vectors without suffix are in A's frame.
+// so two well chosen points of each body rule out nearly all facets of the other. Vectors without suffix are in A's frame.
 #include "collision/facet_search.h"
 
 #include <array>
 #include <limits>
+
+#include "collision/segment.h"
 
 namespace tumble {
 namespace {
@@ -14,12 +16,18 @@ constexpr double kParallel = 1e-24;
 /// Facets this little behind the best [parts of the smaller radius] are still evaluated, so that the lead is known and
 /// rounding can't prune a winner.
 constexpr double kLeadSought = 1e-3;
-/// Faces whose separation is kept for choosing among equals; beyond, they are evaluated a second time.
-constexpr std::uint32_t kKeptHeights = 512;
+/// Share of the radii below which two separations are equal: the rounding of one is a few 1e-16.
+constexpr double kTie = 1e-15;
+/// Faces of each body whose bounds are kept; those of larger hulls are computed again where needed.
+constexpr std::size_t kKeptFaces = 512;
 /// Edges of each side that are looked at together.
 constexpr std::size_t kBlock = 128;
 /// Larger indices are not remembered in the 32-bit feature: such hulls are searched without a seed.
 constexpr std::uint32_t kIndexBits = 15, kIndexLimit = 1u << kIndexBits;
+
+double tie_of(const PolytopePair& pair) {
+  return kTie * (pair.a.radius + pair.b.radius);
+}
 
 std::uint32_t encode(const Facet& facet) {
   if (facet.a >= kIndexLimit || facet.b >= kIndexLimit) return 0;
@@ -33,194 +41,270 @@ struct EdgeArc {
 };
 using Block = std::array<EdgeArc, kBlock>;
 
+/// Heights of one point of the other body over every face of this one: upper bounds of what the faces separate.
+class PointHeights {
+ public:
+  void measure(const Polytope& polytope, const Vec3& point) {
+    polytope_ = &polytope;
+    point_ = point;
+    const std::size_t kept = std::min(polytope.faces.size(), kKeptFaces);
+    for (std::size_t i = 0; i < kept; ++i) heights_[i] = height_over(i);
+  }
+  double operator[](std::size_t face) const { return face < kKeptFaces ? heights_[face] : height_over(face); }
+
+ private:
+  double height_over(std::size_t i) const {
+    return polytope_->faces[i].normal.dot(point_) - polytope_->faces[i].offset;
+  }
+  const Polytope* polytope_ = nullptr;
+  Vec3 point_ = Vec3::Zero();
+  std::array<double, kKeptFaces> heights_;
+};
+
+/// One body and what is known of it: two points of the other one, measured over its faces.
+struct Side {
+  const Polytope& polytope;
+  PointHeights near, nearer;
+
+  double bound(std::size_t face) const { return std::min(near[face], nearer[face]); }
+  /// Along an arc between two normals the overlap with any one point of the other body is at least the smaller of its
+  /// ends, as long as both are overlaps. False: no facet of this edge overlaps by less than `depth` >= 0.
+  bool may_win(const ConvexHull::Edge& edge, double depth) const {
+    return std::max(near[edge.left_face], near[edge.right_face]) >= -depth &&
+           std::max(nearer[edge.left_face], nearer[edge.right_face]) >= -depth;
+  }
+  std::uint32_t most_promising() const {
+    std::uint32_t best = 0;
+    for (std::uint32_t i = 1; i < polytope.faces.size(); ++i) {
+      if (near[i] > near[best]) best = i;
+    }
+    return best;
+  }
+};
+
 class FacetSearch {
  public:
   FacetSearch(const PolytopePair& pair, PairCache& cache)
-      : a_(pair.a), b_(pair.b), R_(pair.R_AB), p_(pair.p_AB), cache_(cache) {}
+      : a_{pair.a, {}, {}}, b_{pair.b, {}, {}}, R_(pair.R_AB), p_(pair.p_AB), cache_(cache),
+        lead_(kLeadSought * std::min(pair.a.radius, pair.b.radius)), tie_(tie_of(pair)) {}
 
-  std::uint32_t face_count() const { return static_cast<std::uint32_t>(a_.faces.size() + b_.faces.size()); }
-  /// Face i of A, then of B: its separation, or some number below `enough` and not below the separation.
-  double height_over(std::uint32_t i, double enough);
-  double separation_along(const Vec3& n);
-  Facet face_facet(std::uint32_t i, double separation) const;
-  Facet edge_facet(std::uint32_t edge_a, std::uint32_t edge_b);
-
-  void search_faces(double margin, double floor, double lead);
-  void search_edges(double margin, double lead);
-  /// The first face that is within `preference` of the best.
-  std::uint32_t first_of_equals(double preference);
-  double lead_of(std::uint32_t winner, double preference) const;
-
-  double best_height = -kInfinity;
-  std::uint32_t best_face = 0;
-  Facet best_edges;
-
- private:
-  double needed(double lead) const { return std::max(best_height, best_edges.separation) - lead; }
+  Facet face_a(std::uint32_t i, double enough = -kInfinity);
+  Facet face_b(std::uint32_t i, double enough = -kInfinity);
+  Facet edges(const EdgeArc& a, const EdgeArc& b);
   EdgeArc arc_of_a(std::uint32_t i) const;
   EdgeArc arc_of_b(std::uint32_t i) const;
-  std::size_t gather_a(std::uint32_t& next, double lead, Block& block);
-  std::size_t gather_b(std::uint32_t& next, double lead, Block& block);
-  void cross(const EdgeArc& a, const EdgeArc& b);
 
-  const Polytope &a_, &b_;
+  FacetAnswer search(double margin, const Facet& seed);
+
+ private:
+  double separation_along(const Vec3& n);
+  void choose_points(const Facet& seed);
+  void search_faces();
+  void search_edges(double margin);
+  void cross(const EdgeArc& a, const EdgeArc& b);
+  bool overlaps_more(const EdgeArc& a_or_b, bool of_a, double depth);
+  double clearance(const Facet& facet) const;
+
+  void offer(const Facet& facet);
+  double needed() const { return std::max(floor_, best_.separation) - lead_; }
+
+  Side a_, b_;
   const Mat3& R_;
   const Vec3& p_;
   PairCache& cache_;
-  std::array<double, kKeptHeights> heights_;
+  const double lead_, tie_;
+  double floor_ = -kInfinity;   // a facet separates by this
+  Facet best_{Facet::Kind::none, 0, 0, -kInfinity};  // the best so far, the first of equals in the order faces of A, of B, edges
+  double second_ = -kInfinity;  // the best of the others that were evaluated
 };
 
-double FacetSearch::height_over(std::uint32_t i, double enough) {
-  if (i < a_.faces.size()) {
-    const ConvexHull::Face& face = a_.faces[i];
-    const double base = face.normal.dot(p_) - face.offset;
-    const Lowest lowest = descend(b_, R_.transpose() * face.normal, cache_.vertex_B, enough - base);
-    cache_.vertex_B = lowest.vertex;
-    return lowest.height + base;
+/// Faces of A, then of B, then pairs of edges come by in this order: a later one must be better by more than a tie.
+void FacetSearch::offer(const Facet& facet) {
+  if (best_.kind == Facet::Kind::none || facet.separation > best_.separation + tie_) {
+    second_ = std::max(second_, best_.kind == Facet::Kind::none ? -kInfinity : best_.separation);
+    best_ = facet;
+  } else {
+    second_ = std::max(second_, facet.separation);
   }
-  const ConvexHull::Face& face = b_.faces[i - a_.faces.size()];
+}
+
+/// Below `enough` the separation may be any number not below the true one.
+Facet FacetSearch::face_a(std::uint32_t i, double enough) {
+  const ConvexHull::Face& face = a_.polytope.faces[i];
+  const double base = face.normal.dot(p_) - face.offset;
+  const Lowest lowest = descend(b_.polytope, R_.transpose() * face.normal, cache_.vertex_B, enough - base);
+  cache_.vertex_B = lowest.vertex;
+  return {Facet::Kind::face_a, i, 0, lowest.height + base, face.normal};
+}
+
+Facet FacetSearch::face_b(std::uint32_t i, double enough) {
+  const ConvexHull::Face& face = b_.polytope.faces[i];
   const Vec3 normal = R_ * face.normal;
   const double base = -normal.dot(p_) - face.offset;
-  const Lowest lowest = descend(a_, normal, cache_.vertex_A, enough - base);
+  const Lowest lowest = descend(a_.polytope, normal, cache_.vertex_A, enough - base);
   cache_.vertex_A = lowest.vertex;
-  return lowest.height + base;
+  return {Facet::Kind::face_b, 0, i, lowest.height + base, -normal};
+}
+
+/// Counted by true supports: edges whose arcs only touch by rounding get no more than their due.
+Facet FacetSearch::edges(const EdgeArc& a, const EdgeArc& b) {
+  const Vec3 across = a.along.cross(b.along);
+  const double length2 = across.squaredNorm();
+  if (!(length2 > kParallel * a.along.squaredNorm() * b.along.squaredNorm())) return {};
+  const double sign = across.dot(a.left + a.right) < 0.0 ? -1.0 : 1.0;
+  const Vec3 n = across * (sign / std::sqrt(length2));
+  return {Facet::Kind::edges, a.index, b.index, separation_along(n), n};
 }
 
 double FacetSearch::separation_along(const Vec3& n) {
-  const Lowest top_a = descend(a_, -n, cache_.vertex_A, -kInfinity);
-  const Lowest bottom_b = descend(b_, R_.transpose() * n, cache_.vertex_B, -kInfinity);
+  const Lowest top_a = descend(a_.polytope, -n, cache_.vertex_A, -kInfinity);
+  const Lowest bottom_b = descend(b_.polytope, R_.transpose() * n, cache_.vertex_B, -kInfinity);
   cache_.vertex_A = top_a.vertex;
   cache_.vertex_B = bottom_b.vertex;
   return bottom_b.height + n.dot(p_) + top_a.height;
 }
 
-Facet FacetSearch::face_facet(std::uint32_t i, double separation) const {
-  if (i < a_.faces.size()) return {Facet::Kind::face_a, i, 0, separation, a_.faces[i].normal};
-  const std::uint32_t k = i - static_cast<std::uint32_t>(a_.faces.size());
-  return {Facet::Kind::face_b, 0, k, separation, -(R_ * b_.faces[k].normal)};
-}
-
-Facet FacetSearch::edge_facet(std::uint32_t edge_a, std::uint32_t edge_b) {
-  const EdgeArc a = arc_of_a(edge_a), b = arc_of_b(edge_b);
-  const Vec3 across = a.along.cross(b.along);
-  const double length2 = across.squaredNorm(),
-               sin2 = length2 / (a.along.squaredNorm() * b.along.squaredNorm());
-  if (!(sin2 > kParallel)) return {};
-  const double sign = across.dot(a.left + a.right) < 0.0 ? -1.0 : 1.0;
-  const Vec3 n = across * (sign / std::sqrt(length2));
-  return {Facet::Kind::edges, edge_a, edge_b, separation_along(n), n, sin2};
-}
-
-void FacetSearch::search_faces(double margin, double floor, double lead) {
-  for (std::uint32_t i = 0; i < face_count() && best_height <= margin; ++i) {
-    const double height = height_over(i, std::max(floor, best_height) - lead);
-    if (i < kKeptHeights) heights_[i] = height;
-    if (height > best_height) best_height = height, best_face = i;
-  }
-}
-
-std::uint32_t FacetSearch::first_of_equals(double preference) {
-  const double enough = best_height - preference;
-  for (std::uint32_t i = 0; i < best_face; ++i) {
-    if ((i < kKeptHeights ? heights_[i] : height_over(i, enough)) >= enough) return i;
-  }
-  return best_face;
-}
-
-/// The winner stays while no earlier face comes within `preference` of the best and nothing, in whatever direction,
-/// beats it by more than `preference`.
-double FacetSearch::lead_of(std::uint32_t winner, double preference) const {
-  if (face_count() > kKeptHeights) return 0.0;
-  double earlier = -kInfinity, other = best_edges.separation;
-  for (std::uint32_t i = 0; i < face_count(); ++i) {
-    if (i < winner) earlier = std::max(earlier, heights_[i]);
-    if (i != winner) other = std::max(other, heights_[i]);
-  }
-  const double any_direction = heights_[winner] + preference - std::max(best_height, other);
-  return std::min(best_height - preference - earlier, any_direction);
-}
-
 EdgeArc FacetSearch::arc_of_a(std::uint32_t i) const {
-  const ConvexHull::Edge& edge = a_.edges[i];
-  const Vec3& tail = a_.vertices[edge.tail];
-  return {tail, a_.vertices[edge.head] - tail, a_.faces[edge.left_face].normal,
-          a_.faces[edge.right_face].normal, i};
+  const Polytope& a = a_.polytope;
+  const ConvexHull::Edge& edge = a.edges[i];
+  const Vec3& tail = a.vertices[edge.tail];
+  return {tail, a.vertices[edge.head] - tail, a.faces[edge.left_face].normal, a.faces[edge.right_face].normal, i};
 }
 
 EdgeArc FacetSearch::arc_of_b(std::uint32_t i) const {
-  const ConvexHull::Edge& edge = b_.edges[i];
-  const Vec3& tail = b_.vertices[edge.tail];
-  return {R_ * tail + p_, R_ * (b_.vertices[edge.head] - tail), -(R_ * b_.faces[edge.left_face].normal),
-          -(R_ * b_.faces[edge.right_face].normal), i};
+  const Polytope& b = b_.polytope;
+  const ConvexHull::Edge& edge = b.edges[i];
+  const Vec3& tail = b.vertices[edge.tail];
+  return {R_ * tail + p_, R_ * (b.vertices[edge.head] - tail), -(R_ * b.faces[edge.left_face].normal),
+          -(R_ * b.faces[edge.right_face].normal), i};
 }
 
-/// Edges whose facets may separate by `needed`: along an arc between two normals the overlap with any one point of the
-/// other body is at least the smaller of its ends, as long as both are overlaps.
-std::size_t FacetSearch::gather_a(std::uint32_t& next, double lead, Block& block) {
-  const double depth = std::max(0.0, -needed(lead));
-  std::size_t n = 0;
-  for (; next < a_.edges.size() && n < kBlock; ++next) {
-    const EdgeArc arc = arc_of_a(next);
-    const auto overlap = [&](std::uint32_t vertex) {
-      const Vec3 d = arc.tail - (R_ * b_.vertices[vertex] + p_);
-      return std::min(arc.left.dot(d), arc.right.dot(d));
-    };
-    if (overlap(cache_.vertex_B) > depth) continue;
-    cache_.vertex_B =
-        descend(b_, R_.transpose() * (arc.left + arc.right), cache_.vertex_B, -kInfinity).vertex;
-    if (overlap(cache_.vertex_B) <= depth) block[n++] = arc;
+/// The points that bound: each body's furthest along the seed's axis (else the last known one, else the centre line),
+/// then the furthest along the face that these leave as the best.
+void FacetSearch::choose_points(const Facet& seed) {
+  const auto point_in_b = [&] { return R_.transpose() * (a_.polytope.vertices[cache_.vertex_A] - p_); };
+  const auto point_in_a = [&] { return R_ * b_.polytope.vertices[cache_.vertex_B] + p_; };
+  if (seed.kind == Facet::Kind::none) {
+    separation_along(cache_.axis_A.squaredNorm() > 0.0 ? cache_.axis_A : p_);
+  } else {
+    separation_along(seed.normal_A);
+    floor_ = seed.separation;
   }
-  return n;
+  a_.near.measure(a_.polytope, point_in_a());
+  b_.near.measure(b_.polytope, point_in_b());
+  const Facet of_a = face_a(a_.most_promising()), of_b = face_b(b_.most_promising());
+  floor_ = std::max({floor_, of_a.separation, of_b.separation});
+  a_.nearer.measure(a_.polytope, point_in_a());
+  b_.nearer.measure(b_.polytope, point_in_b());
 }
 
-std::size_t FacetSearch::gather_b(std::uint32_t& next, double lead, Block& block) {
-  const double depth = std::max(0.0, -needed(lead));
-  std::size_t n = 0;
-  for (; next < b_.edges.size() && n < kBlock; ++next) {
-    const EdgeArc arc = arc_of_b(next);
-    const auto overlap = [&](std::uint32_t vertex) {
-      const Vec3 d = a_.vertices[vertex] - arc.tail;
-      return std::min(arc.left.dot(d), arc.right.dot(d));
-    };
-    if (overlap(cache_.vertex_A) > depth) continue;
-    cache_.vertex_A = descend(a_, -(arc.left + arc.right), cache_.vertex_A, -kInfinity).vertex;
-    if (overlap(cache_.vertex_A) <= depth) block[n++] = arc;
+void FacetSearch::search_faces() {
+  for (std::uint32_t i = 0; i < a_.polytope.faces.size(); ++i) {
+    if (a_.bound(i) >= needed()) offer(face_a(i, needed()));
   }
-  return n;
+  for (std::uint32_t i = 0; i < b_.polytope.faces.size(); ++i) {
+    if (b_.bound(i) >= needed()) offer(face_b(i, needed()));
+  }
 }
 
+/// As Side::may_win, with the other body's furthest point between the edge's normals.
+bool FacetSearch::overlaps_more(const EdgeArc& arc, bool of_a, double depth) {
+  const Vec3 between = arc.left + arc.right;
+  Vec3 d;
+  if (of_a) {
+    cache_.vertex_B = descend(b_.polytope, R_.transpose() * between, cache_.vertex_B, -kInfinity).vertex;
+    d = arc.tail - (R_ * b_.polytope.vertices[cache_.vertex_B] + p_);
+  } else {
+    cache_.vertex_A = descend(a_.polytope, -between, cache_.vertex_A, -kInfinity).vertex;
+    d = a_.polytope.vertices[cache_.vertex_A] - arc.tail;
+  }
+  return std::min(arc.left.dot(d), arc.right.dot(d)) > depth;
+}
+
+/// The arcs cross if the ends of each lie on different sides of the other's plane, and on the same half of the sphere.
 void FacetSearch::cross(const EdgeArc& a, const EdgeArc& b) {
-  // The arcs cross if the ends of each lie on different sides of the other's plane, and on the same half of the sphere.
   const double bl = b.left.dot(a.along), br = b.right.dot(a.along);
   if (bl * br >= 0.0) return;
   const double al = a.left.dot(b.along), ar = a.right.dot(b.along);
   if (al * ar >= 0.0) return;
   const Vec3 across = a.along.cross(b.along);
-  const double length2 = across.squaredNorm(),
-               sin2 = length2 / (a.along.squaredNorm() * b.along.squaredNorm());
-  if (!(sin2 > kParallel)) return;
   const double side = across.dot(a.left + a.right);
   if (side * across.dot(b.left + b.right) <= 0.0) return;
-  const Vec3 n = across * ((side < 0.0 ? -1.0 : 1.0) / std::sqrt(length2));
-  if (n.dot(b.tail - a.tail) <= best_edges.separation) return;
-  // Counted by true supports: arcs that only touch pass the test above by rounding.
-  const double separation = separation_along(n);
-  if (separation > best_edges.separation)
-    best_edges = {Facet::Kind::edges, a.index, b.index, separation, n, sin2};
+  // Without the root: n . (b - a) <= needed, n = across / |across|.
+  const double reach = (side < 0.0 ? -1.0 : 1.0) * across.dot(b.tail - a.tail);
+  const double limit = needed();
+  const double reach2 = reach * std::abs(reach), limit2 = limit * std::abs(limit) * across.squaredNorm();
+  if (reach2 < limit2) return;
+  const Facet facet = edges(a, b);
+  if (facet.kind != Facet::Kind::none) offer(facet);
 }
 
-void FacetSearch::search_edges(double margin, double lead) {
+void FacetSearch::search_edges(double margin) {
   Block block_a, block_b;
-  for (std::uint32_t next_a = 0; next_a < a_.edges.size();) {
-    const std::size_t count_a = gather_a(next_a, lead, block_a);
-    for (std::uint32_t next_b = 0; count_a > 0 && next_b < b_.edges.size();) {
-      const std::size_t count_b = gather_b(next_b, lead, block_b);
+  const auto depth = [&] { return std::max(0.0, -needed()); };
+  const auto& edges_a = a_.polytope.edges;
+  const auto& edges_b = b_.polytope.edges;
+  for (std::uint32_t next_a = 0; next_a < edges_a.size();) {
+    std::size_t count_a = 0;
+    for (; next_a < edges_a.size() && count_a < kBlock; ++next_a) {
+      if (!a_.may_win(edges_a[next_a], depth())) continue;
+      block_a[count_a] = arc_of_a(next_a);
+      count_a += !overlaps_more(block_a[count_a], true, depth());
+    }
+    for (std::uint32_t next_b = 0; count_a > 0 && next_b < edges_b.size();) {
+      std::size_t count_b = 0;
+      for (; next_b < edges_b.size() && count_b < kBlock; ++next_b) {
+        if (!b_.may_win(edges_b[next_b], depth())) continue;
+        block_b[count_b] = arc_of_b(next_b);
+        count_b += !overlaps_more(block_b[count_b], false, depth());
+      }
       for (std::size_t i = 0; i < count_a; ++i) {
         for (std::size_t j = 0; j < count_b; ++j) cross(block_a[i], block_b[j]);
-        if (best_edges.separation > margin) return;
+        if (best_.separation > margin) return;
       }
     }
   }
+}
+
+/// How far inside its own border the facet holds the point nearest to the origin of the Minkowski difference, at least
+/// [m]; < 0: outside.
+double FacetSearch::clearance(const Facet& facet) const {
+  if (facet.kind == Facet::Kind::edges) {
+    const EdgeArc a = arc_of_a(facet.a), b = arc_of_b(facet.b);
+    const SegmentPair pair = closest_points({a.tail + 0.5 * a.along, 0.5 * a.along}, {b.tail + 0.5 * b.along, 0.5 * b.along});
+    const double length_a = a.along.norm(), length_b = b.along.norm();
+    const double sine = a.along.cross(b.along).norm() / (length_a * length_b);
+    return 0.5 * sine * std::min((1.0 - std::abs(pair.s_A)) * length_a, (1.0 - std::abs(pair.s_B)) * length_b);
+  }
+  const bool of_a = facet.kind == Facet::Kind::face_a;
+  const Polytope& polytope = of_a ? a_.polytope : b_.polytope;
+  const Vec3 point = of_a ? Vec3(R_ * b_.polytope.vertices[cache_.vertex_B] + p_)
+                          : Vec3(R_.transpose() * (a_.polytope.vertices[cache_.vertex_A] - p_));
+  const ConvexHull::Face& face = polytope.faces[of_a ? facet.a : facet.b];
+  const auto loop = polytope.loop(face);
+  double least = kInfinity;
+  for (std::size_t i = 0; i < loop.size(); ++i) {
+    const Vec3& tail = polytope.vertices[loop[i]];
+    const Vec3 along = polytope.vertices[loop[i + 1 == loop.size() ? 0 : i + 1]] - tail;
+    least = std::min(least, face.normal.cross(along).dot(point - tail) / along.norm());
+  }
+  return least;
+}
+
+FacetAnswer FacetSearch::search(double margin, const Facet& seed) {
+  choose_points(seed);
+  search_faces();
+  if (best_.separation > margin) return {best_, 0.0};
+  search_edges(margin);
+  if (best_.separation > margin) return {best_, 0.0};
+  // The winner is at depth d under a facet of the Minkowski difference that holds a disc of radius c about the point
+  // below which the origin lies. Then every direction further than atan(c / d) from its normal overlaps by hypot(c, d)
+  // or has a facet of its own on the way down, and all nearer ones are beaten by the disc as long as c > 2 d.
+  if (best_.kind != Facet::Kind::edges) (best_.kind == Facet::Kind::face_a ? face_a(best_.a) : face_b(best_.b));
+  const double c = clearance(best_), d = std::max(0.0, -best_.separation);
+  if (c <= 2.0 * d) return {best_, 0.0};
+  const double gap = best_.separation - std::max(second_, best_.separation - lead_);
+  return {best_, std::min(gap, std::sqrt(c * c + d * d) - d)};
 }
 
 }  // namespace
@@ -230,43 +314,18 @@ Facet recall_facet(const PolytopePair& pair, PairCache& cache) {
   const std::uint32_t a = cache.feature >> kIndexBits & (kIndexLimit - 1),
                       b = cache.feature & (kIndexLimit - 1);
   FacetSearch search(pair, cache);
-  const std::uint32_t faces_a = static_cast<std::uint32_t>(pair.a.faces.size());
-  if (kind == Facet::Kind::face_a && a < faces_a)
-    return search.face_facet(a, search.height_over(a, -kInfinity));
-  if (kind == Facet::Kind::face_b && b < pair.b.faces.size()) {
-    return search.face_facet(faces_a + b, search.height_over(faces_a + b, -kInfinity));
-  }
+  if (kind == Facet::Kind::face_a && a < pair.a.faces.size()) return search.face_a(a);
+  if (kind == Facet::Kind::face_b && b < pair.b.faces.size()) return search.face_b(b);
   if (kind == Facet::Kind::edges && a < pair.a.edges.size() && b < pair.b.edges.size())
-    return search.edge_facet(a, b);
+    return search.edges(search.arc_of_a(a), search.arc_of_b(b));
   return {};
 }
 
-FacetAnswer find_facet(const PolytopePair& pair, double margin, const AxisPreference& preference,
-                       PairCache& cache) {
-  FacetAnswer answer;
+FacetAnswer find_facet(const PolytopePair& pair, double margin, PairCache& cache) {
   const Facet seed = recall_facet(pair, cache);
-  const double lead = kLeadSought * std::min(pair.a.radius, pair.b.radius);
-  if (seed.kind != Facet::Kind::none && seed.separation > margin) {
-    answer.facet = seed;
-    return answer;
-  }
+  if (seed.kind != Facet::Kind::none && seed.separation > margin) return {seed, 0.0};
   FacetSearch search(pair, cache);
-  search.best_edges.separation = -kInfinity;
-  search.search_faces(margin, seed.kind == Facet::Kind::none ? -kInfinity : seed.separation, lead);
-  if (search.best_height > margin) {
-    answer.facet = search.face_facet(search.best_face, search.best_height);
-    return answer;
-  }
-  search.search_edges(margin, lead);
-  const std::uint32_t winner = search.first_of_equals(preference.face);
-  answer.facet = search.face_facet(winner, search.height_over(winner, -kInfinity));
-  if (search.best_edges.separation > margin ||
-      preference.takes_edge(answer.facet.separation, answer.facet.normal_A, search.best_edges.separation,
-                            search.best_edges.normal_A, search.best_edges.sin2)) {
-    answer.facet = search.best_edges;
-  } else {
-    answer.lead = search.lead_of(winner, preference.face);
-  }
+  const FacetAnswer answer = search.search(margin, seed);
   cache.feature = encode(answer.facet);
   return answer;
 }

@@ -2,7 +2,6 @@
 // of edges whose arcs on the Gauss sphere cross (Gregorius, The Separating Axis Test, GDC 2013). In A's frame.
 #pragma once
 
-#include "collision/axis_preference.h"
 #include "collision/pair_cache.h"
 #include "collision/polytope.h"
 
@@ -20,20 +19,17 @@ struct Facet {
   std::uint32_t a = 0, b = 0;     ///< Face of A or B, or both edges.
   double separation = 0.0;        ///< [m]
   Vec3 normal_A = Vec3::UnitZ();  ///< Unit, from A to B.
-  double sin2 = 1.0;              ///< Of the angle between the edges.
 };
 
 struct FacetAnswer {
   Facet facet;
-  /// As long as no separation changes by half of this, the same facet wins [m]; <= 0: unknown.
+  /// As long as no point of B moves by a quarter of this in A's frame, the same facet wins [m]; <= 0: unknown.
   double lead = 0.0;
 };
 
-/// The facet that separates most (or, if one is beyond the margin, the first such one found). Of nearly equal ones the
-/// winner is chosen by AxisPreference from the pose alone: the facet and vertices remembered in the cache, which are
-/// updated, only save work.
-FacetAnswer find_facet(const PolytopePair& pair, double margin, const AxisPreference& preference,
-                       PairCache& cache);
+/// The facet that separates most (or, if one is beyond the margin, some such one). A function of the pose alone: facet,
+/// axis and vertices remembered in the cache, which are updated, only save work.
+FacetAnswer find_facet(const PolytopePair& pair, double margin, PairCache& cache);
 
 /// The facet in the cache, evaluated at the pair's pose; kind none if there is none.
 Facet recall_facet(const PolytopePair& pair, PairCache& cache);

@@ -83,7 +83,7 @@ class Query {
     if (beyond_on_cached_axis()) return ++counters_.cached_axis, Manifold{};
     if (options_.use_gjk && function.gjk_first && !was_near && beyond_by_gjk()) return ++counters_.gjk, Manifold{};
     ++counters_.exact;
-    cache_.slack = options_.use_cached_facet ? cache_.slack - 2.0 * moved_by() : 0.0;
+    cache_.slack = options_.use_cached_facet ? cache_.slack - 4.0 * moved_by() : 0.0;
     if (cache_.slack > 0.0) ++counters_.facet_kept;
     const Manifold manifold = function.exact(a_, b_, X_AB_, margin_, cache_);
     remember_pose();
@@ -112,7 +112,10 @@ class Query {
     const GjkAnswer answer = decide_apart(a_, b_, X_AB_);
     counters_.gjk_uncertified += answer.kind == GjkAnswer::Kind::undecided;
     counters_.gjk_budget_hit += answer.budget_hit;
-    if (answer.kind != GjkAnswer::Kind::apart || answer.gap <= margin_) return false;
+    if (answer.kind != GjkAnswer::Kind::apart || answer.gap <= margin_) {
+      cache_.axis_A = answer.axis_A;  // where the exact features start to look
+      return false;
+    }
     remember_gap(answer.axis_A, answer.gap);
     return true;
   }

@@ -36,6 +36,8 @@ constexpr std::array<ConvexHull::Edge, 12> box_edges() {
   return edges;
 }
 
+/// Looking at every vertex costs no more than descending, up to here.
+constexpr std::size_t kScanVertices = 40;
 constexpr std::array<std::uint32_t, 24> kBoxNeighbours = box_neighbours();
 constexpr std::array<ConvexHull::Edge, 12> kBoxEdges = box_edges();
 
@@ -85,6 +87,14 @@ Polytope view_of(const ConvexHull& hull) {
 }
 
 Lowest descend(const Polytope& polytope, const Vec3& d, std::uint32_t start, double enough) {
+  if (polytope.vertices.size() <= kScanVertices) {
+    Lowest lowest{0, d.dot(polytope.vertices[0])};
+    for (std::uint32_t i = 1; i < polytope.vertices.size(); ++i) {
+      const double height = d.dot(polytope.vertices[i]);
+      if (height < lowest.height) lowest = {i, height};
+    }
+    return lowest;
+  }
   Lowest lowest{start < polytope.vertices.size() ? start : 0, 0.0};
   lowest.height = d.dot(polytope.vertices[lowest.vertex]);
   for (bool descending = true; descending && lowest.height >= enough;) {

@@ -1,6 +1,7 @@
 // Axis-aligned bounding box in world axes [m]. Closed: boxes that only touch overlap.
 #pragma once
 
+#include <algorithm>
 #include <limits>
 
 #include "math/types.h"
@@ -22,6 +23,25 @@ struct Aabb {
   /// The bounds of everything this box touches while it moves by `displacement` [m].
   Aabb swept(const Vec3& displacement) const {
     return {lower + displacement.cwiseMin(0.0), upper + displacement.cwiseMax(0.0)};
+  }
+  /// When a box that is at `start` and moves with `velocity` first touches this one; infinity: never; 0: at once. With a
+  /// box of no size and a unit velocity: where a ray enters. Rounded so that no contact of the insides is missed.
+  double meets_at(const Aabb& start, const Vec3& velocity) const {
+    double enter = 0.0, leave = std::numeric_limits<double>::infinity();
+    for (int i = 0; i < 3; ++i) {
+      const double ahead = lower[i] - start.upper[i], behind = upper[i] - start.lower[i];
+      if (velocity[i] == 0.0) {
+        if (ahead > 0.0 || behind < 0.0) return std::numeric_limits<double>::infinity();
+      } else {
+        const double from = ahead / velocity[i], to = behind / velocity[i];
+        enter = std::max(enter, std::min(from, to));
+        leave = std::min(leave, std::max(from, to));
+      }
+    }
+    // The products and differences above are off by two roundings each.
+    constexpr double kSlack = 4.0 * std::numeric_limits<double>::epsilon();
+    enter *= 1.0 - kSlack;
+    return enter <= leave * (1.0 + kSlack) ? enter : std::numeric_limits<double>::infinity();
   }
   /// Half the surface area [m^2]: the cost measure of the tree. Extents are cut at 1e100 m: half-spaces have infinite
   /// boxes, and differences of infinite areas would be NaN. The boxes themselves, and so all answers, stay exact.

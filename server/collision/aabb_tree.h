@@ -4,6 +4,8 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
+#include <utility>
 #include <vector>
 
 #include "collision/aabb.h"
@@ -24,6 +26,14 @@ class AabbTree {
   /// Appends the `user` of every leaf that overlaps `bounds`, in no useful order.
   void query(const Aabb& bounds, std::vector<std::uint32_t>& users) const;
 
+  /// Offers the `user` of the leaves that a box moving from `start` with `velocity` touches before `limit`, the earlier
+  /// child first: `limit = visit(user)` may come down with what is found. A leaf exactly at the limit is offered.
+  /// A box of no size and a unit velocity make a ray, and times lengths [m].
+  template <typename Visit>
+  void cast(const Aabb& start, const Vec3& velocity, double limit, Visit&& visit) const {
+    if (root_ != kNone) cast_below(root_, start, velocity, limit, visit);
+  }
+
   /// Longest way from the root to a leaf; 0 for one leaf, -1 for none.
   int height() const;
   std::size_t size() const { return leaves_; }
@@ -37,6 +47,27 @@ class AabbTree {
     std::uint32_t user = 0;
     bool is_leaf() const { return child[0] == kNone; }
   };
+
+  template <typename Visit>
+  void cast_below(Leaf node, const Aabb& start, const Vec3& velocity, double& limit, Visit& visit) const {
+    if (at(node).is_leaf()) {
+      limit = visit(at(node).user);
+      return;
+    }
+    Leaf first = at(node).child[0], second = at(node).child[1];
+    double enter_first = at(first).bounds.meets_at(start, velocity);
+    double enter_second = at(second).bounds.meets_at(start, velocity);
+    if (enter_second < enter_first) {
+      std::swap(first, second);
+      std::swap(enter_first, enter_second);
+    }
+    // An endless limit must not let in what is never met.
+    const auto met = [&](double enter) {
+      return enter <= limit && enter < std::numeric_limits<double>::infinity();
+    };
+    if (met(enter_first)) cast_below(first, start, velocity, limit, visit);
+    if (met(enter_second)) cast_below(second, start, velocity, limit, visit);
+  }
 
   Leaf allocate();
   void release(Leaf node);

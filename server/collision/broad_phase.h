@@ -39,6 +39,14 @@ class BroadPhase {
   /// Appends every geometry whose fat box overlaps `bounds`, in ascending order.
   void query(const Aabb& bounds, std::vector<std::uint32_t>& indices) const;
 
+  /// Offers every geometry whose fat box a box moving from `start` touches before `limit`: see AabbTree::cast.
+  template <typename Visit>
+  void cast(const Aabb& start, const Vec3& velocity, double limit, Visit&& visit) const {
+    const auto lowered = [&](std::uint32_t index) { return limit = visit(index); };
+    fixed_.cast(start, velocity, limit, lowered);
+    moving_.cast(start, velocity, limit, lowered);
+  }
+
   std::uint64_t boxes_renewed() const { return boxes_renewed_; }
 
  private:

@@ -82,6 +82,9 @@ class World {
   Pose link_pose(std::uint32_t slot) const;
   const ContactGraph& contacts() const { return contacts_; }
   const std::vector<Geometry>& geometries() const { return geometries_; }
+  Pose geometry_pose(const Geometry& geometry) const;
+  /// For queries (query.h): which geometries are about some place.
+  const BroadPhase& broad_phase() const { return broad_phase_; }
   /// Rises whenever a body is created or destroyed: the catalogue's epoch.
   std::uint64_t model_epoch() const { return model_epoch_; }
 
@@ -162,7 +165,6 @@ class World {
   /// Awake, or a kinematic body on the move: its contacts are looked at.
   bool takes_part(std::uint32_t slot) const;
 
-  Pose geometry_pose(const Geometry& geometry) const;
   /// Where the geometry, or a contact of it, can be while the body turns through a step of h.
   Aabb contact_bounds(const Geometry& geometry, double h) const;
   Contact make_contact(GeometryPair pair) const;

@@ -1,0 +1,28 @@
+// A random shape of every type, for claims that hold for all of them.
+#pragma once
+
+#include <vector>
+
+#include "sample_hulls.h"
+
+namespace tumble::test {
+
+/// One of each convex type with ends, between `low` and `high` [m] across.
+inline std::vector<Shape> random_shapes(RandomPose& random, double low = 0.3, double high = 1.0) {
+  std::vector<Shape> shapes;
+  const Vec3 size = random.vector(low, high), hull_size = random.vector(low, high);
+  const double radius = random.uniform(low, high), half_length = random.uniform(low, high);
+  shapes.push_back(Sphere{radius});
+  shapes.push_back(Capsule{radius, half_length});
+  shapes.push_back(Box{size});
+  shapes.push_back(random_hull(random, 16, hull_size));
+  return shapes;
+}
+
+/// B moved along d from A until the plane pair square to d is `gap` [m] apart: they are at least that far apart.
+inline Pose place_apart(const Shape& a, const Shape& b, const Vec3& d, const Quat& q_AB, double gap) {
+  const double at_origin = separation_along(a, b, q_AB.toRotationMatrix(), Vec3::Zero(), d);
+  return {q_AB, (gap - at_origin) * d};
+}
+
+}  // namespace tumble::test

@@ -4,7 +4,8 @@
 #include <algorithm>
 #include <limits>
 
-#include "math/types.h"
+#include "math/pose.h"
+#include "math/rotation.h"
 
 namespace tumble {
 
@@ -20,6 +21,12 @@ struct Aabb {
   }
   Aabb united(const Aabb& other) const { return {lower.cwiseMin(other.lower), upper.cwiseMax(other.upper)}; }
   Aabb grown(double margin) const { return {lower.array() - margin, upper.array() + margin}; }
+  /// The bounds in A of this box, which is given in B; finite boxes only.
+  Aabb transformed(const Pose& X_AB) const {
+    const Vec3 middle = X_AB * Vec3(0.5 * (lower + upper));
+    const Vec3 reach = rotation_matrix(X_AB.q).cwiseAbs() * (0.5 * (upper - lower));
+    return {middle - reach, middle + reach};
+  }
   /// The bounds of everything this box touches while it moves by `displacement` [m].
   Aabb swept(const Vec3& displacement) const {
     return {lower + displacement.cwiseMin(0.0), upper + displacement.cwiseMax(0.0)};

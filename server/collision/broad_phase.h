@@ -10,9 +10,10 @@
 
 namespace tumble {
 
-/// A pair of geometries by the caller's indices, a < b.
+/// A pair of geometries by the caller's indices, a < b. Of a surface of triangles one part is meant, else part is 0.
 struct GeometryPair {
-  std::uint32_t a, b;
+  std::uint32_t a = 0, b = 0;
+  std::uint32_t part = 0;
   auto operator<=>(const GeometryPair&) const = default;
 };
 

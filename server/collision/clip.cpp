@@ -13,16 +13,22 @@ constexpr double kNoCrossing = 1e-12;
 
 }  // namespace
 
-void ClipPolygon::add_vertex(const Vec3& p, std::uint32_t vertex) {
+void ClipPolygon::add_vertex(const Vec3& p, std::uint32_t vertex, std::uint32_t mark) {
   Vertex& added = loops_[0][static_cast<std::size_t>(count_)];
-  added = {p, name_vertex(!reference_is_a_, vertex), vertex, vertex, false};
-  if (count_ > 0) loops_[0][static_cast<std::size_t>(count_ - 1)].head = vertex;
+  added = {p, name_vertex(!reference_is_a_, vertex), vertex, vertex, false, mark, mark};
+  if (count_ > 0) {
+    Vertex& before = loops_[0][static_cast<std::size_t>(count_ - 1)];
+    before.head = vertex;
+    added.marks |= before.mark;
+  }
   if (count_ == 0 || p.z() < lowest_.p.z()) lowest_ = added;
   ++count_;
 }
 
 void ClipPolygon::close() {
-  loops_[0][static_cast<std::size_t>(count_ - 1)].head = loops_[0][0].tail;
+  Vertex& last = loops_[0][static_cast<std::size_t>(count_ - 1)];
+  last.head = loops_[0][0].tail;
+  loops_[0][0].marks |= last.mark;
 }
 
 std::uint32_t ClipPolygon::name_meeting(const Vertex& edge, const ClipSide& side) const {
@@ -32,6 +38,13 @@ std::uint32_t ClipPolygon::name_meeting(const Vertex& edge, const ClipSide& side
   }
   // Two sides meet in the reference's vertex, unless all between them was cut away.
   return name_vertex(reference_is_a_, edge.tail == side.head ? edge.tail : side.tail);
+}
+
+void ClipPolygon::continue_along(const ClipSide& side, Vertex& vertex) {
+  vertex.tail = side.tail;
+  vertex.head = side.head;
+  vertex.on_side = true;
+  vertex.mark = side.mark;
 }
 
 void ClipPolygon::cut(const ClipSide& side, double tolerance) {
@@ -60,12 +73,11 @@ void ClipPolygon::cut(const ClipSide& side, double tolerance) {
       kept[n] = vertices[i];
       kept[n].p = p;
       kept[n].name = name_meeting(vertices[i], side);
-      if (inside) kept[n].tail = side.tail, kept[n].head = side.head, kept[n].on_side = true;
+      kept[n].marks = vertices[i].mark | side.mark;
+      if (inside) continue_along(side, kept[n]);
       ++n;
     } else if (inside) {
-      kept[n - 1].tail = side.tail;
-      kept[n - 1].head = side.head;
-      kept[n - 1].on_side = true;
+      continue_along(side, kept[n - 1]);
     }
   }
   current_ = 1 - current_;

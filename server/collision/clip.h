@@ -32,19 +32,31 @@ struct FacePlane {
 struct ClipSide {
   double nx, ny, offset;
   std::uint32_t tail, head;
+  std::uint32_t mark = 0;  ///< A bit by which corners on this side can be told.
 };
 
 /// A convex polygon over the reference plane (z = gap along the normal).
 class ClipPolygon {
  public:
   explicit ClipPolygon(bool reference_is_a) : reference_is_a_(reference_is_a) {}
-  /// Vertices in loop order; `vertex` is its number in its body.
-  void add_vertex(const Vec3& p, std::uint32_t vertex);
+  /// Vertices in loop order; `vertex` is its number in its body, `mark` a bit of the edge that starts there.
+  void add_vertex(const Vec3& p, std::uint32_t vertex, std::uint32_t mark = 0);
   /// After the last vertex.
   void close();
 
   /// Cuts away what is further outside than `tolerance` [m].
   void cut(const ClipSide& side, double tolerance);
+
+  /// What is left, corner by corner. `marks`: of the edges and sides that meet in it.
+  struct Corner {
+    Vec3 p;
+    std::uint32_t name, marks;
+  };
+  int count() const { return count_; }
+  Corner corner(int i) const {
+    const Vertex& vertex = loops_[static_cast<std::size_t>(current_)][static_cast<std::size_t>(i)];
+    return {vertex.p, vertex.name, vertex.marks};
+  }
 
   /// Everything up to the margin as manifold with normal_A (from A to B). If nothing lies over the reference face, the
   /// lowest vertex of the uncut polygon speaks for it.
@@ -55,10 +67,12 @@ class ClipPolygon {
   struct Vertex {
     Vec3 p;
     std::uint32_t name;
-    std::uint32_t tail, head;  ///< Of the edge that starts here, as numbered in its body.
-    bool on_side;              ///< That edge is a side of the reference face.
+    std::uint32_t tail, head;   ///< Of the edge that starts here, as numbered in its body.
+    bool on_side;               ///< That edge is a side of the reference face.
+    std::uint32_t mark, marks;  ///< Of that edge; of all that meets in the vertex.
   };
   using Loop = std::array<Vertex, kCapacity>;
+  static void continue_along(const ClipSide& side, Vertex& vertex);
   std::uint32_t name_meeting(const Vertex& edge, const ClipSide& side) const;
 
   bool reference_is_a_;

@@ -11,6 +11,7 @@
 #include "collision/collide_half_space.h"
 #include "collision/collide_polytope.h"
 #include "collision/collide_sphere.h"
+#include "collision/collide_triangle.h"
 #include "collision/gjk.h"
 #include "collision/pair_order.h"
 #include "math/rotation.h"
@@ -81,7 +82,8 @@ class Query {
     if (stays_beyond_by_motion()) return ++counters_.motion_bound, Manifold{};
     error_ = kRounding * (bounding_radius(a_) + radius_b_ + X_AB_.p.norm());
     if (beyond_on_cached_axis()) return ++counters_.cached_axis, Manifold{};
-    if (options_.use_gjk && function.gjk_first && !was_near && beyond_by_gjk()) return ++counters_.gjk, Manifold{};
+    if (options_.use_gjk && function.gjk_first && !was_near && beyond_by_gjk())
+      return ++counters_.gjk, Manifold{};
     ++counters_.exact;
     cache_.slack = options_.use_cached_facet ? cache_.slack - 4.0 * moved_by() : 0.0;
     if (cache_.slack > 0.0) ++counters_.facet_kept;
@@ -145,7 +147,13 @@ class Query {
 };
 
 Manifold collide_in_order(const Shape& a, const Shape& b, const Pose& X_AB, double margin,
-                          const NarrowPhaseOptions& options, PairCache& cache, NarrowPhaseCounters& counters) {
+                          const NarrowPhaseOptions& options, PairCache& cache, NarrowPhaseCounters& counters,
+                          std::uint32_t part) {
+  if (const TriangleSurface* surface = surface_of(b)) {
+    ++counters.triangles;
+    ++counters.closed_form;
+    return collide_triangle(a, *surface, part, X_AB, margin);
+  }
   const PairFunction& function = kMatrix[a.index()][b.index()];
   if (function.exact != nullptr) return Query(a, b, X_AB, margin, options, cache, counters).run(function);
   ++counters.closed_form;
@@ -157,8 +165,7 @@ Manifold collide_in_order(const Shape& a, const Shape& b, const Pose& X_AB, doub
 bool runs_backwards(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB, PairCache& cache) {
   if (a.index() != b.index()) return a.index() > b.index();
   if (cache.order == PairCache::Order::open) {
-    cache.order =
-        comes_second(a, X_WA, b, X_WB) ? PairCache::Order::backwards : PairCache::Order::forwards;
+    cache.order = comes_second(a, X_WA, b, X_WB) ? PairCache::Order::backwards : PairCache::Order::forwards;
   }
   return cache.order == PairCache::Order::backwards;
 }
@@ -175,13 +182,14 @@ void swap_shapes(Manifold& manifold, const Pose& X_AB) {
 }
 
 Manifold collide(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB, double margin,
-                 const NarrowPhaseOptions& options, PairCache& cache, NarrowPhaseCounters& counters) {
+                 const NarrowPhaseOptions& options, PairCache& cache, NarrowPhaseCounters& counters,
+                 std::uint32_t part) {
   ++counters.queries;
   if (!runs_backwards(a, X_WA, b, X_WB, cache)) {
-    return collide_in_order(a, b, relative_pose(X_WA, X_WB), margin, options, cache, counters);
+    return collide_in_order(a, b, relative_pose(X_WA, X_WB), margin, options, cache, counters, part);
   }
   const Pose X_BA = relative_pose(X_WB, X_WA);
-  Manifold manifold = collide_in_order(b, a, X_BA, margin, options, cache, counters);
+  Manifold manifold = collide_in_order(b, a, X_BA, margin, options, cache, counters, part);
   swap_shapes(manifold, X_BA);
   return manifold;
 }

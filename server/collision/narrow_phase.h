@@ -20,16 +20,19 @@ struct NarrowPhaseOptions {
 };
 
 struct NarrowPhaseCounters {
-  /// Where pairs ended; the last five add up to `queries`.
+  /// Where pairs ended; the last five add up to `queries`. A triangle of a surface and a body are a pair.
   std::uint64_t queries = 0, motion_bound = 0, cached_axis = 0, gjk = 0, exact = 0, closed_form = 0;
   /// On the way: "apart" answers of libccd without proof, runs stopped by the call budget, facets kept without search.
+  std::uint64_t triangles = 0;  ///< Queries of which one side was a triangle of a surface.
   std::uint64_t gjk_uncertified = 0, gjk_budget_hit = 0, facet_kept = 0;
 };
 
 /// The manifold of shape A at X_WA and shape B at X_WB: every point with separation <= margin [m], none if the shapes
-/// are further apart. Finite for any finite input; deterministic in (shapes, poses, cache).
+/// are further apart. Finite for any finite input; deterministic in (shapes, poses, cache). If one of them is a surface,
+/// `part` is the triangle of it that is meant.
 Manifold collide(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB, double margin,
-                 const NarrowPhaseOptions& options, PairCache& cache, NarrowPhaseCounters& counters);
+                 const NarrowPhaseOptions& options, PairCache& cache, NarrowPhaseCounters& counters,
+                 std::uint32_t part = 0);
 
 /// B in A. The difference of positions comes first: far from the origin it is exact, products with it are not.
 Pose relative_pose(const Pose& X_WA, const Pose& X_WB);

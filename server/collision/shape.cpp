@@ -21,6 +21,8 @@ struct Name {
   const char* operator()(const Capsule&) const { return "capsule"; }
   const char* operator()(const Box&) const { return "box"; }
   const char* operator()(const HullPointer&) const { return "convex_hull"; }
+  const char* operator()(const TriangleMeshPointer&) const { return "triangle_mesh"; }
+  const char* operator()(const HeightFieldPointer&) const { return "height_field"; }
 };
 
 std::string check_length(const char* field, double value) {
@@ -54,6 +56,8 @@ struct Check {
     }
     return {};
   }
+  std::string operator()(const TriangleMeshPointer& m) const { return m ? "" : "triangle mesh: missing"; }
+  std::string operator()(const HeightFieldPointer& h) const { return h ? "" : "height field: missing"; }
 };
 
 struct Bounds {
@@ -89,6 +93,8 @@ struct Bounds {
     }
     return bounds;
   }
+  Aabb operator()(const TriangleMeshPointer& m) const { return m->bounds().transformed(X_WS); }
+  Aabb operator()(const HeightFieldPointer& h) const { return h->bounds().transformed(X_WS); }
 };
 
 struct Radius {
@@ -97,6 +103,8 @@ struct Radius {
   double operator()(const Capsule& c) const { return c.half_length + c.radius; }
   double operator()(const Box& b) const { return b.half_extents.norm(); }
   double operator()(const HullPointer& h) const { return h->radius; }
+  double operator()(const TriangleMeshPointer& m) const { return m->radius(); }
+  double operator()(const HeightFieldPointer& h) const { return h->radius(); }
 };
 
 Vec3 scaled_to(const Vec3& d, double length) {
@@ -139,6 +147,8 @@ struct Support {
             std::copysign(b.half_extents.z(), d.z())};
   }
   Vec3 operator()(const HullPointer& h) const { return h->vertices[furthest_vertex(*h, d)]; }
+  Vec3 operator()(const TriangleMeshPointer&) const { return Vec3::Zero(); }
+  Vec3 operator()(const HeightFieldPointer&) const { return Vec3::Zero(); }
 };
 
 }  // namespace
@@ -148,6 +158,14 @@ const char* shape_name(const Shape& shape) {
 }
 std::string check_shape(const Shape& shape) {
   return std::visit(Check{}, shape);
+}
+const TriangleSurface* surface_of(const Shape& shape) {
+  if (const auto* mesh = std::get_if<TriangleMeshPointer>(&shape)) return mesh->get();
+  if (const auto* field = std::get_if<HeightFieldPointer>(&shape)) return field->get();
+  return nullptr;
+}
+bool is_static_only(const Shape& shape) {
+  return std::holds_alternative<HalfSpace>(shape) || surface_of(shape) != nullptr;
 }
 Aabb compute_aabb(const Shape& shape, const Pose& X_WS) {
   return std::visit(Bounds{X_WS}, shape);

@@ -9,6 +9,8 @@
 
 #include "collision/aabb.h"
 #include "collision/convex_hull.h"
+#include "collision/height_field.h"
+#include "collision/triangle_mesh.h"
 #include "math/pose.h"
 
 namespace tumble {
@@ -29,23 +31,32 @@ struct HalfSpace {};
 using HullPointer = std::shared_ptr<const ConvexHull>;
 
 /// The order of the alternatives is the order of the pair matrix in narrow_phase.cpp.
-using Shape = std::variant<HalfSpace, Sphere, Capsule, Box, HullPointer>;
+/// Half-spaces and the surfaces at the end belong to static bodies only: they have no mass.
+using Shape =
+    std::variant<HalfSpace, Sphere, Capsule, Box, HullPointer, TriangleMeshPointer, HeightFieldPointer>;
 inline constexpr std::size_t kShapeTypes = std::variant_size_v<Shape>;
 
-/// Plain lower-case name of the shape's type, as on the wire: "half_space", "sphere", "capsule", "box", "convex_hull".
+/// Plain lower-case name of the shape's type, as on the wire: "half_space", "sphere", "capsule", "box", "convex_hull",
+/// "triangle_mesh", "height_field".
 const char* shape_name(const Shape& shape);
 
 /// Empty if the shape is sound, else "field: what is wrong with which value".
 std::string check_shape(const Shape& shape);
 
-/// Tight bounds of the shape at X_WS, in W. A half-space has infinite bounds on every side but an axis-aligned top.
+/// The surface of a triangle mesh or height field, else null.
+const TriangleSurface* surface_of(const Shape& shape);
+
+/// True for the shapes without mass, which only static bodies may have.
+bool is_static_only(const Shape& shape);
+
+/// Tight bounds of the shape at X_WS, in W; of a surface those of its turned bounding box. A half-space has infinite bounds on every side but an axis-aligned top.
 Aabb compute_aabb(const Shape& shape, const Pose& X_WS);
 
 /// Largest distance of a point of the shape from S's origin [m]; infinite for a half-space.
 double bounding_radius(const Shape& shape);
 
 /// Furthest point of the shape along d (any length > 0), both in S. True vertices, ties resolved by copysign, so that
-/// mirrored calls give mirrored points. Not for half-spaces.
+/// mirrored calls give mirrored points. Not for half-spaces and surfaces.
 Vec3 support(const Shape& shape, const Vec3& d_S);
 
 /// Distance between the planes normal to n_A (unit, from A to B) that touch A and B at X_AB [m]; > 0: n_A separates.

@@ -85,6 +85,12 @@ struct InertiaOf {
   Inertia operator()(const Box& b) const { return box_inertia(b.half_extents, density); }
   Inertia operator()(const Capsule& c) const { return capsule_inertia(c.radius, c.half_length, density); }
   Inertia operator()(const HullPointer& hull) const { return hull_inertia(*hull, density); }
+  Inertia operator()(const TriangleMeshPointer&) const {
+    throw std::invalid_argument("shape: a triangle_mesh has no mass");
+  }
+  Inertia operator()(const HeightFieldPointer&) const {
+    throw std::invalid_argument("shape: a height_field has no mass");
+  }
 };
 
 Mat3 symmetric_part(const Mat3& m) {

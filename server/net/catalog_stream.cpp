@@ -28,7 +28,19 @@ struct ShapeCode {
   std::int8_t type;
   Vec3 size;
   const ConvexHull* hull = nullptr;
+  const Aabb* bounds = nullptr;  // of a surface
+
+  std::size_t vertices() const { return hull ? hull->vertices.size() : bounds ? 8 : 0; }
+  Vec3 vertex(std::size_t i) const {
+    if (hull) return hull->vertices[i];
+    const auto side = [&](int axis) { return i >> axis & 1 ? bounds->upper[axis] : bounds->lower[axis]; };
+    return {side(0), side(1), side(2)};
+  }
 };
+
+ShapeCode surface_code(std::int8_t type, const Aabb& bounds) {
+  return {type, bounds.upper - bounds.lower, nullptr, &bounds};
+}
 
 struct ShapeCoder {
   ShapeCode operator()(const HalfSpace&) const { return {catalog_t::SHAPE_HALF_SPACE, Vec3::Zero()}; }
@@ -37,6 +49,12 @@ struct ShapeCoder {
     return {catalog_t::SHAPE_CAPSULE, Vec3(c.radius, 2.0 * c.half_length, 0.0)};
   }
   ShapeCode operator()(const Box& b) const { return {catalog_t::SHAPE_BOX, 2.0 * b.half_extents}; }
+  ShapeCode operator()(const TriangleMeshPointer& m) const {
+    return surface_code(catalog_t::SHAPE_TRIANGLE_MESH, m->bounds());
+  }
+  ShapeCode operator()(const HeightFieldPointer& h) const {
+    return surface_code(catalog_t::SHAPE_HEIGHT_FIELD, h->bounds());
+  }
   ShapeCode operator()(const HullPointer& h) const { return {catalog_t::SHAPE_HULL, Vec3::Zero(), h.get()}; }
 };
 
@@ -65,7 +83,7 @@ void push_shape(const BodyModel& model, std::size_t number, const ShapeCode& cod
   message.shape_body.push_back(static_cast<std::int32_t>(model.id.index));
   message.shape_number.push_back(static_cast<std::int32_t>(number));
   message.shape_type.push_back(code.type);
-  message.shape_vertices.push_back(code.hull ? static_cast<std::int32_t>(code.hull->vertices.size()) : 0);
+  message.shape_vertices.push_back(static_cast<std::int32_t>(code.vertices()));
   message.size_x.push_back(code.size.x());
   message.size_y.push_back(code.size.y());
   message.size_z.push_back(code.size.z());
@@ -182,9 +200,9 @@ bool CatalogStream::add_body(Range& range, catalog_t& message, std::size_t& room
       push_shape(*model, range.part, code, message);
       range.part_listed = true;
     }
-    for (; code.hull && range.vertex < code.hull->vertices.size(); ++range.vertex) {
+    for (; range.vertex < code.vertices(); ++range.vertex) {
       if (!take(room, kVertexRow)) return false;
-      push_vertex(*model, range.part, range.vertex, code.hull->vertices[range.vertex], message);
+      push_vertex(*model, range.part, range.vertex, code.vertex(range.vertex), message);
     }
   }
   return true;

@@ -1,6 +1,8 @@
-// Points of a triangle mesh from a file, Wavefront OBJ or STL (ASCII and binary): what a convex hull is built from.
+// Triangle meshes from files, Wavefront OBJ or STL (ASCII and binary): what surfaces and convex hulls are built from.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -20,12 +22,20 @@ class MeshError : public std::runtime_error {
 /// Throws MeshError for other schemes.
 std::string resolve_mesh_path(const std::string& uri, const std::string& directory);
 
-/// All vertices of the file, in its order and unit (taken as [m]); each distinct point once. Every vertex is read,
-/// whether a face uses it or not. Throws MeshError.
-std::vector<Vec3> read_mesh_points(const std::string& path);
+struct MeshTriangles {
+  std::vector<Vec3>
+      vertices;  ///< In the file's order and unit (taken as [m]), repeated where the file repeats them.
+  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< Polygons of OBJ as fans about their first corner.
+};
+
+/// Every vertex is read, whether a face uses it or not. Throws MeshError.
+MeshTriangles read_mesh_file(const std::string& path);
 
 /// The same from bytes in memory; `name` stands for the file in messages.
-std::vector<Vec3> read_obj_points(std::string_view text, const std::string& name);
-std::vector<Vec3> read_stl_points(std::string_view bytes, const std::string& name);
+MeshTriangles read_obj(std::string_view text, const std::string& name);
+MeshTriangles read_stl(std::string_view bytes, const std::string& name);
+
+/// Each distinct point once, in order.
+std::vector<Vec3> distinct_points(const std::vector<Vec3>& points);
 
 }  // namespace tumble

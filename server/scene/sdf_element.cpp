@@ -100,6 +100,10 @@ void SdfElement::fail_attribute(std::string_view name, std::string_view reason,
   fail_at(std::string(tag()) + " " + std::string(name), std::string(reason) + " (" + shown(value) + ")");
 }
 
+void SdfElement::warn(std::string_view text) const {
+  file_->warnings.push_back(where(tag()) + ": " + std::string(text));
+}
+
 void SdfElement::warn_ignored(std::string_view reason) const {
   file_->warnings.push_back(where(tag()) + " is ignored: " + std::string(reason));
 }

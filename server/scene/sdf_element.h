@@ -38,6 +38,8 @@ class SdfElement {
   [[noreturn]] void fail(std::string_view reason, std::string_view value) const;
   [[noreturn]] void fail_attribute(std::string_view name, std::string_view reason,
                                    std::string_view value) const;
+  /// Notes "FILE:LINE: <tag>: text".
+  void warn(std::string_view text) const;
   /// Notes "FILE:LINE: <tag> is ignored: reason".
   void warn_ignored(std::string_view reason) const;
   void warn_attribute_ignored(std::string_view name, std::string_view reason, std::string_view value) const;

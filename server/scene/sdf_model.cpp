@@ -43,9 +43,8 @@ Mat3 rotated(const Quat& q, const Mat3& M) {
 
 /// The geometries' inertia, scaled to the mass that is given alone.
 Inertia scaled_inertia(SdfElement& inertial, const BodyDefinition& body, double mass) {
-  const bool solid =
-      std::none_of(body.geometries.begin(), body.geometries.end(),
-                   [](const GeometryDefinition& g) { return std::holds_alternative<HalfSpace>(g.shape); });
+  const bool solid = std::none_of(body.geometries.begin(), body.geometries.end(),
+                                  [](const GeometryDefinition& g) { return is_static_only(g.shape); });
   if (body.geometries.empty() || !solid)
     inertial.fail("has a <mass>, but neither <inertia> nor a solid <collision>");
   Inertia inertia = inertia_of_geometries(body);
@@ -131,13 +130,10 @@ void read_motion(SdfElement& link, BodyDefinition& body) {
 
 void read_collisions(std::vector<SdfElement>& collisions, BodyDefinition& body) {
   for (SdfElement& collision : collisions) {
-    GeometryDefinition geometry = read_collision(collision);
+    GeometryDefinition geometry = read_collision(collision, body.type);
     const auto same_name = [&](const GeometryDefinition& g) { return g.name == geometry.name; };
     if (std::any_of(body.geometries.begin(), body.geometries.end(), same_name)) {
       collision.fail_attribute("name", "is used twice in this link", geometry.name);
-    }
-    if (std::holds_alternative<HalfSpace>(geometry.shape) && body.type != BodyType::fixed) {
-      collision.fail("a plane needs a static model", geometry.name);
     }
     body.geometries.push_back(std::move(geometry));
   }

@@ -25,6 +25,13 @@ std::string to_text(const Quat& q) {
   return to_text(q.x()) + " " + to_text(q.y()) + " " + to_text(q.z()) + " " + to_text(q.w());
 }
 
+std::string to_text(std::uint32_t i) {
+  return std::to_string(i);
+}
+std::string to_text(const TriangleMesh::Corners& corners) {
+  return to_text(corners[0]) + " " + to_text(corners[1]) + " " + to_text(corners[2]);
+}
+
 /// An element that is closed at the end of its scope. The printer keeps a pointer to the name until then.
 class Tag {
  public:
@@ -100,6 +107,27 @@ void write_shape(tinyxml2::XMLPrinter& out, const HullPointer& hull) {
   std::string points;
   for (const Vec3& p : hull->vertices) points.append(points.empty() ? "" : "  ").append(to_text(p));
   write(out, "tumble:points", points);
+}
+
+template <typename Values>
+std::string to_list(const Values& values) {
+  std::string text;
+  for (const auto& value : values) text.append(text.empty() ? "" : " ").append(to_text(value));
+  return text;
+}
+
+void write_shape(tinyxml2::XMLPrinter& out, const TriangleMeshPointer& mesh) {
+  Tag shape(out, "tumble:triangle_mesh");
+  write(out, "tumble:vertices", to_list(mesh->vertices()));
+  write(out, "tumble:triangles", to_list(mesh->triangles()));
+}
+
+void write_shape(tinyxml2::XMLPrinter& out, const HeightFieldPointer& field) {
+  Tag shape(out, "tumble:height_field");
+  write(out, "tumble:columns", field->columns());
+  write(out, "tumble:rows", field->rows());
+  write(out, "tumble:spacing", to_shortest_text(field->dx()) + " " + to_shortest_text(field->dy()));
+  write(out, "tumble:heights", to_list(field->heights()));
 }
 
 void write_geometry(tinyxml2::XMLPrinter& out, const GeometryDefinition& geometry) {

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <utility>
 
 #include "world/world.h"
 
@@ -94,9 +95,10 @@ void World::update_broad_phase(const StepContext& step) {
     const std::uint32_t b = geometries_[pair.b].body;
     return a == b || !(movable(a) || movable(b));
   });
+  split_surface_pairs();
   scratch_.lost.clear();
   std::copy_if(active_contacts_.begin(), active_contacts_.end(), std::back_inserter(scratch_.lost),
-               [this](std::uint32_t index) { return !broad_phase_.overlaps(contacts_.all()[index].pair); });
+               [this](std::uint32_t index) { return is_lost(contacts_.all()[index].pair); });
   if (!scratch_.lost.empty()) {
     contacts_.remove(scratch_.lost);
     active_stale_ = true;
@@ -106,6 +108,33 @@ void World::update_broad_phase(const StepContext& step) {
   }
   refresh_active();
   counters_.boxes_renewed = broad_phase_.boxes_renewed();
+}
+
+void World::split_surface_pairs() {
+  std::swap(scratch_.pairs, scratch_.whole_pairs);
+  scratch_.pairs.clear();
+  scratch_.split_pairs.clear();
+  for (const GeometryPair pair : scratch_.whole_pairs) {
+    const TriangleSurface* surface = surface_of(geometries_[pair.a].shape);
+    const std::uint32_t fixed = surface ? pair.a : pair.b, other = surface ? pair.b : pair.a;
+    if (!surface) surface = surface_of(geometries_[pair.b].shape);
+    if (!surface) {
+      scratch_.pairs.push_back(pair);
+      continue;
+    }
+    scratch_.split_pairs.push_back(pair);
+    scratch_.triangles.clear();
+    const Pose X_SW = geometry_pose(geometries_[fixed]).inverse();
+    surface->query(broad_phase_.fat_bounds(other).transformed(X_SW), scratch_.triangles);
+    for (const std::uint32_t part : scratch_.triangles) scratch_.pairs.push_back({pair.a, pair.b, part});
+  }
+}
+
+bool World::is_lost(GeometryPair pair) const {
+  if (!broad_phase_.overlaps(pair)) return true;
+  const std::vector<GeometryPair>&whole = scratch_.split_pairs, &pairs = scratch_.pairs;
+  return std::binary_search(whole.begin(), whole.end(), GeometryPair{pair.a, pair.b}) &&
+         !std::binary_search(pairs.begin(), pairs.end(), pair);
 }
 
 Contact World::make_contact(GeometryPair pair) const {
@@ -136,8 +165,9 @@ void World::update_contacts(const StepContext& step) {
     const Geometry& b = geometries_[contact.pair.b];
     const Manifold old_manifold = contact.manifold;
     const Pose X_WA = geometry_pose(a);
-    contact.manifold = collide(a.shape, X_WA, b.shape, geometry_pose(b), pair_margin(contact, step.h),
-                               options_.narrow_phase, contact.cache, counters_.narrow_phase);
+    contact.manifold =
+        collide(a.shape, X_WA, b.shape, geometry_pose(b), pair_margin(contact, step.h), options_.narrow_phase,
+                contact.cache, counters_.narrow_phase, contact.pair.part);
     if (contact.manifold.count == 0) continue;
     const auto old_impulse = contact.impulse;
     contact.normal_W = X_WA.q * contact.manifold.normal_A;

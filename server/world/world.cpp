@@ -73,8 +73,9 @@ void check_definition(const BodyDefinition& definition) {
     }
     check_pose("geometry pose", geometry.X_LS);
     check_material(geometry.material);
-    if (definition.type != BodyType::fixed && std::holds_alternative<HalfSpace>(geometry.shape)) {
-      refuse(fmt::format("geometry '{}': a half-space belongs to a static body only", geometry.name));
+    if (definition.type != BodyType::fixed && is_static_only(geometry.shape)) {
+      refuse(fmt::format("geometry '{}': a {} belongs to a static body only", geometry.name,
+                         shape_name(geometry.shape)));
     }
   }
 }

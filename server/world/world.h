@@ -115,6 +115,8 @@ class World {
     std::vector<Vec3> force, torque;  // by slot, zero between steps
     std::vector<std::uint32_t> forced;
     std::vector<GeometryPair> pairs;
+    std::vector<GeometryPair> whole_pairs, split_pairs;  // pairs as found; those of them with a surface
+    std::vector<std::uint32_t> triangles;
     std::vector<std::uint32_t> lost;  // contacts whose boxes came apart, ascending
     std::vector<IslandEdge> edges;
     std::vector<std::uint32_t> edge_source;  // contact index, or contacts().size() + tie index
@@ -157,6 +159,10 @@ class World {
   // step.cpp: the stages, in order.
   void apply_pushes(const StepContext& step);
   void update_broad_phase(const StepContext& step);
+  /// Replaces the pairs with a surface by pairs with those of its triangles that meet the other's fat box.
+  void split_surface_pairs();
+  /// The boxes came apart, or this triangle is none of those that the other's new fat box meets.
+  bool is_lost(GeometryPair pair) const;
   void update_contacts(const StepContext& step);
   void refresh_active();
   void build_islands();

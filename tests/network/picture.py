@@ -76,7 +76,7 @@ def shape_faces(message, i, vertices):
         return box_faces(size)
     if kind in (catalog_t.SHAPE_SPHERE, catalog_t.SHAPE_CAPSULE):
         return capsule_faces(size[0], size[1] if kind == catalog_t.SHAPE_CAPSULE else 0.0)
-    if kind == catalog_t.SHAPE_HULL:
+    if kind in (catalog_t.SHAPE_HULL, catalog_t.SHAPE_TRIANGLE_MESH, catalog_t.SHAPE_HEIGHT_FIELD):
         return hull_faces(vertices[message.shape_body[i], message.shape_number[i]])
     return []
 

@@ -22,6 +22,10 @@ std::string shape_text(const Body& body) {
       return fmt::format("box {:.4g} x {:.4g} x {:.4g}", size[0], size[1], size[2]);
     case catalog_t::SHAPE_HULL:
       return fmt::format("hull, {} vertices", shape.num_vertices);
+    case catalog_t::SHAPE_TRIANGLE_MESH:
+    case catalog_t::SHAPE_HEIGHT_FIELD:
+      return fmt::format("{} {:.4g} x {:.4g} x {:.4g}", shape_type_name(shape.type), size[0], size[1],
+                         size[2]);
   }
   return shape_type_name(shape.type);
 }

@@ -28,6 +28,10 @@ const char* shape_type_name(std::int8_t type) {
       return "box";
     case catalog_t::SHAPE_HULL:
       return "convex_hull";
+    case catalog_t::SHAPE_TRIANGLE_MESH:
+      return "triangle_mesh";
+    case catalog_t::SHAPE_HEIGHT_FIELD:
+      return "height_field";
   }
   return "?";
 }

@@ -20,7 +20,7 @@ struct Shape {
   Quat orientation{1, 0, 0, 0};  ///< X_BS.
   double friction = 0.0, restitution = 0.0;
   std::array<float, 4> color{};                ///< RGBA, 0..1.
-  std::int32_t num_vertices = 0;               ///< Of a hull.
+  std::int32_t num_vertices = 0;               ///< Of a hull; of a surface the corners of its bounds.
   std::vector<std::array<float, 3>> vertices;  ///< In the shape's frame [m]; not yet heard of: not a number.
 };
 

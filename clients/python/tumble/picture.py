@@ -22,6 +22,8 @@ SHAPE_NAMES = {
     catalog_t.SHAPE_CAPSULE: "capsule",
     catalog_t.SHAPE_BOX: "box",
     catalog_t.SHAPE_HULL: "convex_hull",
+    catalog_t.SHAPE_TRIANGLE_MESH: "triangle_mesh",
+    catalog_t.SHAPE_HEIGHT_FIELD: "height_field",
 }
 TYPE_NAMES = {catalog_t.TYPE_STATIC: "static", catalog_t.TYPE_DYNAMIC: "dynamic", catalog_t.TYPE_KINEMATIC: "kinematic"}
 
@@ -32,7 +34,7 @@ class Shape:
 
     type: str
     size: Tuple[float, float, float]
-    """sphere: radius; capsule: radius, straight length; box: three edges; else zeros."""
+    """sphere: radius; capsule: radius, straight length; box: three edges; surface: of its bounds; else zeros."""
     position: Tuple[float, float, float]
     orientation: Tuple[float, float, float, float]
     friction: float
@@ -40,7 +42,7 @@ class Shape:
     color: Tuple[float, float, float, float]
     num_vertices: int
     vertices: Dict[int, Tuple[float, float, float]] = field(default_factory=dict)
-    """Of a hull, by number, as far as heard of."""
+    """Of a hull, or the corners of a surface's bounds, by number, as far as heard of."""
 
 
 @dataclass

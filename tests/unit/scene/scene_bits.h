@@ -72,6 +72,19 @@ class SceneBits {
         add(std::uint64_t{i});
     }
   }
+  void add(const TriangleMeshPointer& mesh) {
+    for (const Vec3& p : mesh->vertices()) add(p);
+    for (const TriangleMesh::Corners& corners : mesh->triangles()) {
+      for (const std::uint32_t i : corners) add(std::uint64_t{i});
+    }
+  }
+  void add(const HeightFieldPointer& field) {
+    add(std::uint64_t{field->columns()});
+    add(std::uint64_t{field->rows()});
+    add(field->dx());
+    add(field->dy());
+    for (const double height : field->heights()) add(height);
+  }
   void add(const GeometryDefinition& geometry) {
     add(geometry.name);
     add(std::uint64_t{geometry.shape.index()});

@@ -94,15 +94,15 @@ TEST(SdfError, Poses) {
 TEST(SdfError, Geometry) {
   check(
       {{in_geometry("<cylinder><radius>1</radius><length>1</length></cylinder>"),
-        "s.sdf:6: <cylinder>: this geometry is not supported: use sphere, box, capsule, plane, mesh or "
-        "tumble:convex_hull"},
+        "s.sdf:6: <cylinder>: this geometry is not supported: use sphere, box, capsule, plane, mesh, "
+        "heightmap or tumble:convex_hull"},
        {in_geometry(""),
-        "s.sdf:5: <geometry>: needs one of sphere, box, capsule, plane, mesh, tumble:convex_hull"},
+        "s.sdf:5: <geometry>: needs one of sphere, box, capsule, plane, mesh, heightmap, tumble:convex_hull"},
        {in_geometry("<sphere><radius>1</radius></sphere>\n<box><size>1 1 1</size></box>"),
         "s.sdf:7: <box>: a geometry has one shape only"},
        {in_geometry("<sphere/>"), "s.sdf:6: <sphere>: needs a <radius>"},
        {in_geometry("<box><size>1 -1 1</size></box>"), "s.sdf:6: <size>: must be > 0 (1 -1 1)"},
-       {in_geometry("<plane/>"), "s.sdf:5: <collision>: a plane needs a static model (c)"},
+       {in_geometry("<plane/>"), "s.sdf:6: <plane>: needs a static model: it has no mass"},
        {in_geometry("<plane><normal>0 0 0</normal></plane>"), "s.sdf:6: <normal>: must not be zero (0 0 0)"},
        {in_geometry("<mesh><uri>model://x.obj</uri></mesh>"),
         "s.sdf:6: <uri>: only paths and file:// are supported (model://x.obj)"},

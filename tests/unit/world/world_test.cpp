@@ -46,7 +46,7 @@ TEST(World, AWrongFieldIsNamedWithItsValueAndNothingIsCreated) {
   bad = good;
   bad.geometries[0].shape = HalfSpace{};
   EXPECT_EQ(refusal([&] { world.create_body(bad); }),
-            "geometry 'collision': a half-space belongs to a static body only");
+            "geometry 'collision': a half_space belongs to a static body only");
   EXPECT_EQ(world.body_count(), 0u);
   EXPECT_EQ(world.model_epoch(), 0u);
 }

@@ -138,7 +138,7 @@ final class WorldView extends JPanel {
                 }
             }
             case catalog_t.SHAPE_BOX -> box(g, body, shape);
-            case catalog_t.SHAPE_HULL -> {
+            case catalog_t.SHAPE_HULL, catalog_t.SHAPE_TRIANGLE_MESH, catalog_t.SHAPE_HEIGHT_FIELD -> {
                 int x = screenX(body.position), y = screenY(body.position);
                 g.drawOval(x - 3, y - 3, 6, 6);
             }

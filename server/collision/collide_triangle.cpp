@@ -1,0 +1,400 @@
+// The separation along a direction c (out of the surface) is maximised over the directions in which the triangle is
+// locally the surface's top: its own normal; the arcs of normals around its ridges; the cones around its peaks. Candidates
+// are the triangle's normal, faces of the body, crossings of edges, and for round bodies the lines between closest
+// features. Directions that only lead to a neighbour's normal are left to the neighbour. Everything in A's frame.
+#include "collision/collide_triangle.h"
+
+#include <array>
+#include <limits>
+#include <optional>
+
+#include "collision/axis_preference.h"
+#include "collision/clip.h"
+#include "collision/feature_name.h"
+#include "collision/polytope.h"
+#include "collision/segment_contact.h"
+#include "math/rotation.h"
+
+namespace tumble {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+/// sin^2 of the angle between edges below which they span no direction.
+constexpr double kParallel = 1e-24;
+/// Cosine above which a direction is the triangle's own normal: what differs is rounding.
+constexpr double kSameNormal = 1.0 - 2e-16;
+/// Sine by which a direction may point into the triangle's plane.
+constexpr double kAlong = 1e-9;
+/// Rounding of a height, as part of the size.
+constexpr double kRounding = 64.0 * std::numeric_limits<double>::epsilon();
+/// Overlap, as part of the body's radius, from which the corners' cones are searched as well. Up to there a wrong guess
+/// near a corner pushes by no more than that.
+constexpr double kDeep = 1e-3;
+constexpr std::size_t kRing = 32;  // edges of a corner that are looked at
+
+std::size_t next(std::size_t k) {
+  return k == 2 ? 0 : k + 1;
+}
+std::size_t previous(std::size_t k) {
+  return k == 0 ? 2 : k - 1;
+}
+
+/// A direction and the features that meet along it.
+struct Meeting {
+  enum class Kind { own_face, neighbour, body_face, edges, vertex };
+  Kind kind = Kind::own_face;
+  double separation = -kInfinity;  // of the cores
+  Vec3 c = Vec3::UnitZ();
+  std::uint32_t body = 0;                                 // face, edge or vertex of the body
+  std::size_t edge = 0;                                   // edge or corner of the triangle
+  Vec3 p_body = Vec3::Zero(), p_triangle = Vec3::Zero();  // of kind vertex: the points that meet
+};
+
+class TriangleQuery {
+ public:
+  TriangleQuery(const Polytope& core, double radius, const TriangleSurface& surface, std::uint32_t part,
+                const Pose& X_AB, double margin)
+      : core_(core),
+        radius_(radius),
+        enough_(margin + radius),
+        margin_(margin),
+        surface_(surface),
+        R_AB_(rotation_matrix(X_AB.q)),
+        p_AB_(X_AB.p),
+        t_(surface.triangle(part)) {
+    const auto place = [&](Vec3& p) { p = R_AB_ * p + p_AB_; };
+    const auto turn = [&](Vec3& d) { d = R_AB_ * d; };
+    turn(t_.normal);
+    for (std::size_t k = 0; k < 3; ++k) {
+      place(t_.corner[k]);
+      if (t_.bend[k] == Bend::open) continue;
+      place(t_.beyond[k]);
+      turn(t_.beyond_normal[k]);
+    }
+    double size2 = 0.0;
+    for (std::size_t k = 0; k < 3; ++k) size2 = std::max(size2, along(k).squaredNorm());
+    preference_ = AxisPreference::of(std::min(core.radius + radius, std::sqrt(size2)));
+  }
+
+  Manifold run() {
+    if (!meet_own_face() || !meet_body_faces()) return {};
+    meet_neighbours();
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (t_.bend[k] == Bend::convex || t_.bend[k] == Bend::open) meet_edges(k);
+    }
+    if (core_.faces.empty()) meet_points();
+    if (best_.separation > enough_) return {};
+    if (best_.separation < -kDeep * core_.radius) meet_rings();
+    switch (best_.kind) {
+      case Meeting::Kind::own_face:
+        return lie_on_triangle();
+      case Meeting::Kind::neighbour:
+        return {};
+      case Meeting::Kind::body_face:
+        return lie_on_body();
+      case Meeting::Kind::edges:
+        return cross_edges();
+      case Meeting::Kind::vertex:
+        break;
+    }
+    const double separation = best_.separation - radius_;
+    const Vec3 middle = 0.5 * (best_.p_triangle + best_.p_body - radius_ * best_.c);
+    return single_point(-best_.c, middle, separation, margin_, best_.body);
+  }
+
+ private:
+  Vec3 along(std::size_t k) const { return t_.corner[next(k)] - t_.corner[k]; }
+  double lowest(const Vec3& c) const { return descend(core_, c, 0, -kInfinity).height; }
+
+  /// Is c (normal to edge k) between the normals of the two sides of the edge?
+  bool edge_allows(std::size_t k, const Vec3& c) const {
+    if (!stays_below(t_.corner[previous(k)], t_.corner[k], c)) return false;
+    return t_.bend[k] == Bend::open ? c.dot(t_.normal) >= 0.0 : stays_below(t_.beyond[k], t_.corner[k], c);
+  }
+  bool corner_allows(std::size_t k, const Vec3& c) const {
+    return c.dot(t_.normal) >= -kAlong && stays_below(t_.corner[next(k)], t_.corner[k], c) &&
+           stays_below(t_.corner[previous(k)], t_.corner[k], c) &&
+           surface_.is_top(t_.vertex[k], R_AB_.transpose() * c);
+  }
+
+  /// False if the body is too high above the plane, or behind it.
+  bool meet_own_face() {
+    const double plane = t_.normal.dot(t_.corner[0]);
+    best_.c = t_.normal;
+    best_.separation = lowest(t_.normal) - plane;
+    const double highest = -lowest(-t_.normal) - plane;
+    return best_.separation <= enough_ && best_.separation + highest >= 0.0;
+  }
+
+  /// False if a face of the body keeps the triangle away, whether the surface may push along it or not.
+  bool meet_body_faces() {
+    for (std::uint32_t i = 0; i < core_.faces.size(); ++i) {
+      const Vec3& f = core_.faces[i].normal;
+      std::size_t top = 0;
+      for (std::size_t k = 1; k < 3; ++k) {
+        if (f.dot(t_.corner[k]) < f.dot(t_.corner[top])) top = k;
+      }
+      const double separation = f.dot(t_.corner[top]) - core_.faces[i].offset;
+      if (separation > enough_) return false;
+      if (separation <= best_.separation + preference_.face || !corner_allows(top, -f)) continue;
+      best_ = {.kind = Meeting::Kind::body_face, .separation = separation, .c = -f, .body = i, .edge = top};
+    }
+    return true;
+  }
+
+  void meet_neighbours() {
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (t_.bend[k] != Bend::convex) continue;
+      const Vec3& c = t_.beyond_normal[k];
+      const double separation = lowest(c) - c.dot(t_.corner[k]);
+      if (separation > best_.separation) {
+        best_ = {.kind = Meeting::Kind::neighbour, .separation = separation, .c = c, .edge = k};
+      }
+    }
+  }
+
+  void meet_edges(std::size_t k) {
+    const Vec3 own = along(k);
+    const Vec3 outward = own.cross(t_.normal);
+    const Vec3 between = t_.normal + (t_.bend[k] == Bend::open ? outward.normalized() : t_.beyond_normal[k]);
+    for (std::uint32_t i = 0; i < core_.edges.size(); ++i) {
+      const Vec3& tail = core_.vertices[core_.edges[i].tail];
+      const Vec3 across = own.cross(core_.vertices[core_.edges[i].head] - tail);
+      const double length2 = across.squaredNorm();
+      const double sin2 =
+          length2 / (own.squaredNorm() * (core_.vertices[core_.edges[i].head] - tail).squaredNorm());
+      if (!(sin2 > kParallel)) continue;
+      const Vec3 c = across * ((across.dot(between) < 0.0 ? -1.0 : 1.0) / std::sqrt(length2));
+      const double offset = c.dot(t_.corner[k]);
+      const double height = c.dot(tail) - offset;
+      if (height <= best_.separation || !edge_allows(k, c)) continue;
+      const double separation = lowest(c) - offset;
+      if (height > separation + kRounding * core_.radius) continue;  // another edge is the lowest
+      if (best_.kind != Meeting::Kind::edges &&
+          !preference_.takes_edge(best_.separation, best_.c, separation, c, sin2)) {
+        continue;
+      }
+      best_ = {.kind = Meeting::Kind::edges, .separation = separation, .c = c, .body = i, .edge = k};
+    }
+  }
+
+  /// Round bodies: their core's ends and, of a segment, its side against ridges and peaks.
+  void meet_points() {
+    const bool is_segment = core_.vertices.size() == 2;
+    for (const Vec3& p : core_.vertices) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        meet_corner(k, p);
+        if (t_.bend[k] == Bend::flat || t_.bend[k] == Bend::concave) continue;
+        const Vec3 side = along(k);
+        const double s = side.dot(p - t_.corner[k]) / side.squaredNorm();
+        if (!(s > 0.0 && s < 1.0)) continue;
+        const Vec3 foot = t_.corner[k] + s * side;
+        consider({.kind = is_segment ? Meeting::Kind::edges : Meeting::Kind::vertex,
+                  .body = is_segment ? 0 : name_crossing(0, 0, t_.vertex[k], t_.vertex[next(k)]),
+                  .edge = k,
+                  .p_body = p,
+                  .p_triangle = foot},
+                 [&](const Vec3& c) { return edge_allows(k, c); });
+      }
+    }
+    if (!is_segment) return;
+    const Segment core{0.5 * (core_.vertices[0] + core_.vertices[1]),
+                       0.5 * (core_.vertices[1] - core_.vertices[0])};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double s = core.closest_parameter(t_.corner[k]);
+      if (s > -1.0 && s < 1.0) meet_corner(k, core.at(s));
+    }
+  }
+
+  void meet_corner(std::size_t k, const Vec3& p) {
+    consider({.kind = Meeting::Kind::vertex,
+              .body = name_vertex(false, t_.vertex[k]),
+              .edge = k,
+              .p_body = p,
+              .p_triangle = t_.corner[k]},
+             [&](const Vec3& c) { return corner_allows(k, c); });
+  }
+
+  /// Takes the line between the two points if it separates most, is allowed, and the core has no lower point along it.
+  template <typename Allows>
+  void consider(Meeting meeting, Allows allows) {
+    const Vec3 gap = meeting.p_body - meeting.p_triangle;
+    meeting.separation = gap.norm();
+    if (meeting.separation <= best_.separation || !(meeting.separation > 0.0)) return;
+    meeting.c = gap / meeting.separation;
+    if (meeting.c.dot(t_.normal) >= kSameNormal || !allows(meeting.c)) return;
+    for (const Vec3& other : core_.vertices) {
+      const Vec3 d = other - meeting.p_body;
+      if (meeting.c.dot(d) < -kAlong * d.norm()) return;
+    }
+    best_ = meeting;
+  }
+
+  /// A deep body may be nearer to the outside along a normal or an edge that the triangle has only a corner of: what
+  /// wins in a corner's cone belongs to the triangles around it.
+  void meet_rings() {
+    std::array<Vec3, kRing> others;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::size_t count = surface_.ring(t_.vertex[k], others);
+      for (std::size_t i = 0; i < count; ++i) others[i] = R_AB_ * others[i] + p_AB_ - t_.corner[k];
+      for (std::size_t i = 0; i < count; ++i) {
+        for (std::size_t j = 0; j < i; ++j) meet_cone(k, others[i].cross(others[j]));
+        for (const ConvexHull::Edge& edge : core_.edges) {
+          meet_cone(k, others[i].cross(core_.vertices[edge.head] - core_.vertices[edge.tail]));
+        }
+      }
+    }
+  }
+
+  void meet_cone(std::size_t k, const Vec3& across) {
+    const double length = across.norm();
+    if (!(length > 0.0)) return;
+    for (const Vec3& c : {Vec3(across / length), Vec3(across / -length)}) {
+      if (c.dot(t_.normal) < -kAlong) continue;
+      const double separation = lowest(c) - c.dot(t_.corner[k]);
+      if (separation <= best_.separation + preference_.edge || !corner_allows(k, c)) continue;
+      best_ = {.kind = Meeting::Kind::neighbour, .separation = separation, .c = c, .edge = k};
+    }
+  }
+
+  /// The edges that are seams of a plane, as marks. What continues flatly is clipped by the neighbour too, and its corners
+  /// are the same as without the seam: a corner that only seams make is none.
+  std::uint32_t seams() const {
+    std::uint32_t marks = 0;
+    for (std::uint32_t k = 0; k < 3; ++k) marks |= t_.bend[k] == Bend::flat ? 1u << k : 0u;
+    return marks;
+  }
+
+  Manifold collect(const ClipPolygon& polygon, const FacePlane& plane, const Vec3& normal_A,
+                   double merge) const {
+    ManifoldBuilder builder(normal_A, margin_, merge);
+    for (int i = 0; i < polygon.count(); ++i) {
+      auto [p, name, marks] = polygon.corner(i);
+      if (marks != 0 && (marks & ~seams()) == 0) continue;
+      p.z() -= radius_;
+      builder.add(plane.middle_A(p), p.z(), name);
+    }
+    return builder.finish();
+  }
+
+  static std::optional<ClipSide> side_between(const Vec3& tail, const Vec3& head) {
+    const double x = head.y() - tail.y(), y = tail.x() - head.x(), length = std::sqrt(x * x + y * y);
+    if (!(length > 0.0)) return std::nullopt;
+    return ClipSide{x / length, y / length, (x * tail.x() + y * tail.y()) / length, 0, 0};
+  }
+
+  Manifold lie_on_triangle() const {
+    FacePlane plane{t_.corner[0], along(0).normalized(), {}, t_.normal, t_.normal};
+    plane.v_A = plane.n_A.cross(plane.u_A);
+    ClipPolygon polygon(false);
+    double width = triangle_width();
+    if (core_.faces.empty()) {
+      for (std::uint32_t i = 0; i < core_.vertices.size(); ++i) {
+        polygon.add_vertex(plane.to_plane(core_.vertices[i]), i);
+      }
+    } else {
+      const ConvexHull::Face& face = core_.faces[face_towards(core_, -t_.normal)];
+      const auto loop = core_.loop(face);
+      const std::size_t count = std::min<std::size_t>(loop.size(), kMaxFaceVertices);
+      for (std::size_t k = 0; k < count; ++k) {
+        const std::uint32_t vertex = loop[k * loop.size() / count];
+        polygon.add_vertex(plane.to_plane(core_.vertices[vertex]), vertex);
+      }
+      width = std::min(width, face_width(core_, face));
+    }
+    polygon.close();
+    const ContactTolerance tolerance = ContactTolerance::of(width);
+    for (std::size_t k = 0; k < 3; ++k) {
+      auto side = side_between(plane.to_plane(t_.corner[k]), plane.to_plane(t_.corner[next(k)]));
+      if (!side) continue;
+      side->tail = t_.vertex[k];
+      side->head = t_.vertex[next(k)];
+      side->mark = 1u << k;
+      polygon.cut(*side, tolerance.inside);
+    }
+    return collect(polygon, plane, -t_.normal, tolerance.merge);
+  }
+
+  Manifold lie_on_body() const {
+    const ConvexHull::Face& face = core_.faces[best_.body];
+    const auto loop = core_.loop(face);
+    FacePlane plane{core_.vertices[loop[0]], {}, {}, face.normal, face.normal};
+    plane.u_A = direction_or(core_.vertices[loop[1]] - plane.origin_A, perpendicular_to(plane.n_A));
+    plane.v_A = plane.n_A.cross(plane.u_A);
+    ClipPolygon polygon(true);
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      polygon.add_vertex(plane.to_plane(t_.corner[k]), t_.vertex[k], 1u << k);
+    }
+    polygon.close();
+    const ContactTolerance tolerance =
+        ContactTolerance::of(std::min(face_width(core_, face), triangle_width()));
+    for (std::size_t i = 0; i < loop.size(); ++i) {
+      const std::uint32_t tail = loop[i], head = loop[i + 1 == loop.size() ? 0 : i + 1];
+      auto side = side_between(plane.to_plane(core_.vertices[tail]), plane.to_plane(core_.vertices[head]));
+      if (!side) continue;
+      side->tail = tail;
+      side->head = head;
+      polygon.cut(*side, tolerance.inside);
+    }
+    return collect(polygon, plane, face.normal, tolerance.merge);
+  }
+
+  Manifold cross_edges() const {
+    const ConvexHull::Edge& edge = core_.edges[best_.body];
+    const Vec3 &tail = core_.vertices[edge.tail], &head = core_.vertices[edge.head];
+    const Segment a{0.5 * (tail + head), 0.5 * (head - tail)};
+    const Segment b{0.5 * (t_.corner[best_.edge] + t_.corner[next(best_.edge)]), 0.5 * along(best_.edge)};
+    const ContactTolerance tolerance = ContactTolerance::of(std::min(a.reach.norm(), b.reach.norm()));
+    // The best of the allowed directions need not be one in which the two features meet.
+    const SegmentPair closest = closest_points(a, b);
+    const Vec3 gap = closest.p_A - closest.p_B;
+    if ((gap - gap.dot(best_.c) * best_.c).norm() > tolerance.merge) return {};
+    return make_segment_manifold(
+        {a, radius_}, {b, 0.0}, -best_.c, margin_, tolerance.merge,
+        name_crossing(edge.tail, edge.head, t_.vertex[best_.edge], t_.vertex[next(best_.edge)]));
+  }
+
+  double triangle_width() const {
+    const double perimeter = along(0).norm() + along(1).norm() + along(2).norm();
+    return along(0).cross(along(1)).norm() / perimeter;
+  }
+
+  const Polytope& core_;
+  const double radius_, enough_, margin_;  // [m]
+  const TriangleSurface& surface_;
+  const Mat3 R_AB_;
+  const Vec3 p_AB_;
+  SurfaceTriangle t_;  // in A
+  AxisPreference preference_;
+  Meeting best_;
+};
+
+}  // namespace
+
+Manifold collide_triangle(const Shape& a, const TriangleSurface& b, std::uint32_t part, const Pose& X_AB,
+                          double margin) {
+  static constexpr std::array<std::uint32_t, 3> kPointOffsets = {0, 0, 0};
+  static constexpr std::array<std::uint32_t, 3> kSegmentOffsets = {0, 1, 2};
+  static constexpr std::array<std::uint32_t, 2> kSegmentNeighbours = {1, 0};
+  static constexpr std::array<ConvexHull::Edge, 1> kSegmentEdges = {{{0, 1, 0, 0}}};
+  const auto query = [&](const Polytope& core, double radius) {
+    return TriangleQuery(core, radius, b, part, X_AB, margin).run();
+  };
+  if (const auto* sphere = std::get_if<Sphere>(&a)) {
+    const std::array<Vec3, 1> centre = {Vec3::Zero()};
+    return query({centre, {}, {}, {}, kPointOffsets, {}, 0.0}, sphere->radius);
+  }
+  if (const auto* capsule = std::get_if<Capsule>(&a)) {
+    const std::array<Vec3, 2> ends = {Vec3(0, 0, -capsule->half_length), Vec3(0, 0, capsule->half_length)};
+    return query({ends, {}, {}, kSegmentEdges, kSegmentOffsets, kSegmentNeighbours, capsule->half_length},
+                 capsule->radius);
+  }
+  if (const auto* box = std::get_if<Box>(&a)) {
+    const BoxFeatures features(*box);
+    return query(features.view(), 0.0);
+  }
+  if (const auto* hull = std::get_if<HullPointer>(&a)) return query(view_of(**hull), 0.0);
+  return {};
+}
+
+}  // namespace tumble

@@ -41,6 +41,14 @@ int compare(const HullPointer& a, const HullPointer& b) {
   return 0;
 }
 
+/// Surfaces never move, so they never meet.
+int compare(const TriangleMeshPointer&, const TriangleMeshPointer&) {
+  return 0;
+}
+int compare(const HeightFieldPointer&, const HeightFieldPointer&) {
+  return 0;
+}
+
 }  // namespace
 
 bool comes_second(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "collision/shape_cast.h"
 
@@ -99,6 +100,8 @@ struct Cast {
     }
     return crossing.hit(start, length);
   }
+  std::optional<RayHit> operator()(const TriangleMeshPointer& m) const { return cast_surface(*m); }
+  std::optional<RayHit> operator()(const HeightFieldPointer& h) const { return cast_surface(*h); }
   /// Any other convex shape: a point moved along the ray, from and to where nothing can be beyond.
   template <typename Convex>
   std::optional<RayHit> operator()(const Convex& convex) const {
@@ -114,6 +117,29 @@ struct Cast {
   }
 
  private:
+  /// Piece by piece of the way through the surface's bounds, so that a long slanted ray does not gather all triangles. The
+  /// back of a surface is not met. The feature is the triangle.
+  std::optional<RayHit> cast_surface(const TriangleSurface& surface) const {
+    constexpr int kPieces = 64;
+    const double reach = 2.0 * surface.radius();
+    const double from = std::max(start, -reach), to = std::min(start + length, reach);
+    std::vector<std::uint32_t> triangles;
+    std::optional<RayHit> first;
+    for (int piece = 0; piece < kPieces && from <= to && !first; ++piece) {
+      const double step = (to - from) / kPieces, begin = from + piece * step;
+      const Vec3 p = line.at(begin), q = line.at(begin + step);
+      triangles.clear();
+      surface.query(Aabb{p.cwiseMin(q), p.cwiseMax(q)}.grown(1e-9 * reach), triangles);
+      for (const std::uint32_t index : triangles) {
+        const SurfaceTriangle t = surface.triangle(index);
+        const Ray ray{line.at(start), line.direction, first ? first->distance : length};
+        const auto hit = cast_ray_on_triangle(t.corner[0], t.corner[1], t.corner[2], ray);
+        if (!hit || hit->feature != 0 || (first && hit->distance >= first->distance)) continue;
+        first = RayHit{hit->distance, t.normal, index, false};
+      }
+    }
+    return first;
+  }
   std::optional<RayHit> cast_ball(const Vec3& centre, double radius, std::uint32_t feature) const {
     const double middle = line.direction.dot(centre - line.origin);
     const double off = (line.at(middle) - centre).norm();

@@ -8,7 +8,7 @@
 
 namespace tumble {
 
-/// Names in alphabetical order: cradle, incline, pile, pyramid, springs, tumbling.
+/// Names in alphabetical order: cradle, incline, pile, pyramid, springs, terrain, tumbling.
 std::vector<std::string_view> demo_names();
 /// The SDF text of a demo; empty if there is no such demo.
 std::string_view demo_text(std::string_view name);

@@ -36,7 +36,7 @@ def test_summary_is_complete_and_the_same_twice():
     assert first["state_hash"] == second["state_hash"]
 
 
-@pytest.mark.parametrize("demo", ["cradle", "incline", "pile", "pyramid", "springs", "tumbling"])
+@pytest.mark.parametrize("demo", ["cradle", "incline", "pile", "pyramid", "springs", "terrain", "tumbling"])
 def test_every_demo_runs(demo):
     done = run_server("--demo", demo, "--fast", "--steps", 24, "--summary", "json")
     assert done.returncode == 0, done.stderr

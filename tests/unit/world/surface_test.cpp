@@ -78,7 +78,9 @@ TEST(Surface, SlidingOverFlatTrianglesIsSlidingOnThePlane) {
         ASSERT_LE((motion.x - expected.x).norm(), 1e-9) << slider.name << " " << step;  // measured 1.6e-11
         // The speed along the ground is kept to the last digits.
         ASSERT_LE((motion.v - Vec3(5, 1.7, motion.v.z())).norm(), 5e-12) << slider.name << " " << step;
-        ASSERT_EQ(world.report().contacts, plane.report().contacts) << slider.name << " " << step;
+        // Within 0.1 mm of a seam a point belongs to both triangles.
+        ASSERT_GE(world.report().contacts, plane.report().contacts) << slider.name << " " << step;
+        ASSERT_LE(world.report().contacts, 2 * plane.report().contacts) << slider.name << " " << step;
       }
     }
   }
@@ -124,7 +126,8 @@ TEST(Surface, ABallRestsInAGroove) {
   for (const Contact& contact : world.contacts().all()) {
     points += contact.manifold.count;
     // Both walls push at 45 degrees with m g / sqrt(2).
-    if (contact.manifold.count > 0) EXPECT_NEAR(std::abs(contact.normal_W.z()), std::sqrt(0.5), 1e-9);
+    if (contact.manifold.count == 0) continue;
+    EXPECT_NEAR(std::abs(contact.normal_W.z()), std::sqrt(0.5), 1e-9);
   }
   EXPECT_GE(points, 2);
 }

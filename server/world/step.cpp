@@ -24,7 +24,7 @@ void World::step(const std::function<void(Stage)>& stage_done) {
   }
   apply_pushes(step);
   stage_done(Stage::commands);
-  update_broad_phase(step);
+  update_pairs();
   stage_done(Stage::broad_phase);
   update_contacts(step);
   stage_done(Stage::narrow_phase);
@@ -32,6 +32,8 @@ void World::step(const std::function<void(Stage)>& stage_done) {
   stage_done(Stage::islands);
   advance_islands(step);
   stage_done(Stage::solve);
+  update_boxes(step);
+  stage_done(Stage::broad_phase);
   ++step_count_;
   update_report();
   stage_done(Stage::report);
@@ -76,8 +78,8 @@ Aabb World::contact_bounds(const Geometry& geometry, double h) const {
   return bounds.grown(geometry.contact_margin + turn);
 }
 
-void World::update_broad_phase(const StepContext& step) {
-  refresh_active();
+/// After the motion, so that queries between steps find every box about its geometry, and already for the next step.
+void World::update_boxes(const StepContext& step) {
   const auto update = [&](std::uint32_t slot) {
     for (const std::uint32_t index : bodies_[slot].geometries) {
       const Geometry& geometry = geometries_[index];
@@ -85,9 +87,13 @@ void World::update_broad_phase(const StepContext& step) {
                         step.h * motions_[slot].v);
     }
   };
-  for (const std::uint32_t slot : awake_) update(slot);
+  for (const std::uint32_t slot : awake_) update(slot);  // what came to rest in this step is still listed
   for (const std::uint32_t slot : kinematic_) update(slot);
+  counters_.boxes_renewed = broad_phase_.boxes_renewed();
+}
 
+void World::update_pairs() {
+  refresh_active();
   scratch_.pairs.clear();
   broad_phase_.update_pairs(scratch_.pairs);
   std::erase_if(scratch_.pairs, [this](const GeometryPair& pair) {
@@ -107,7 +113,6 @@ void World::update_broad_phase(const StepContext& step) {
     active_stale_ = true;
   }
   refresh_active();
-  counters_.boxes_renewed = broad_phase_.boxes_renewed();
 }
 
 void World::split_surface_pairs() {

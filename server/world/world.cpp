@@ -180,9 +180,15 @@ std::uint32_t World::add_geometry(std::uint32_t slot, const GeometryDefinition& 
   // Slack in proportion to small things, so that gravel does not pair with everything in a hand's breadth.
   geometry.fat_margin = std::min(options_.fat_margin, 0.2 * geometry.radius);
   geometry.contact_margin = std::min(options_.contact_margin, 0.2 * geometry.radius);
-  broad_phase_.add(index, contact_bounds(geometry, options_.time_step), geometry.fat_margin,
-                   bodies_[slot].type != BodyType::fixed);
+  add_box(index);
   return index;
+}
+
+void World::add_box(std::uint32_t index) {
+  const Geometry& geometry = geometries_[index];
+  const Aabb bounds = contact_bounds(geometry, options_.time_step);
+  broad_phase_.add(index, bounds.swept(options_.time_step * motions_[geometry.body].v), geometry.fat_margin,
+                   bodies_[geometry.body].type != BodyType::fixed);
 }
 
 bool World::destroy_body(BodyId id) {
@@ -307,8 +313,7 @@ void World::set_motion(BodyId id, const Pose& X_WL, const Vec3& v_WB, const Vec3
   // Its pairs are forgotten: a teleport has no past to warm-start from.
   for (const std::uint32_t index : bodies_[slot].geometries) {
     broad_phase_.remove(index);
-    const Geometry& geometry = geometries_[index];
-    broad_phase_.add(index, contact_bounds(geometry, options_.time_step), geometry.fat_margin, true);
+    add_box(index);
   }
   active_stale_ = true;
 }

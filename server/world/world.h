@@ -84,6 +84,7 @@ class World {
   const std::vector<Geometry>& geometries() const { return geometries_; }
   Pose geometry_pose(const Geometry& geometry) const;
   /// For queries (query.h): which geometries are about some place.
+  /// Between steps every box holds its geometry where it is, and where it is going in the next step.
   const BroadPhase& broad_phase() const { return broad_phase_; }
   /// Rises whenever a body is created or destroyed: the catalogue's epoch.
   std::uint64_t model_epoch() const { return model_epoch_; }
@@ -158,7 +159,7 @@ class World {
 
   // step.cpp: the stages, in order.
   void apply_pushes(const StepContext& step);
-  void update_broad_phase(const StepContext& step);
+  void update_pairs();
   /// Replaces the pairs with a surface by pairs with those of its triangles that meet the other's fat box.
   void split_surface_pairs();
   /// The boxes came apart, or this triangle is none of those that the other's new fat box meets.
@@ -167,10 +168,13 @@ class World {
   void refresh_active();
   void build_islands();
   void advance_islands(const StepContext& step);
+  void update_boxes(const StepContext& step);
   void update_report();
   /// Awake, or a kinematic body on the move: its contacts are looked at.
   bool takes_part(std::uint32_t slot) const;
 
+  /// Puts the geometry, or puts it back, into the broad phase at its present place.
+  void add_box(std::uint32_t index);
   /// Where the geometry, or a contact of it, can be while the body turns through a step of h.
   Aabb contact_bounds(const Geometry& geometry, double h) const;
   Contact make_contact(GeometryPair pair) const;

@@ -125,8 +125,11 @@ struct Cast {
     const double from = std::max(start, -reach), to = std::min(start + length, reach);
     std::vector<std::uint32_t> triangles;
     std::optional<RayHit> first;
-    for (int piece = 0; piece < kPieces && from <= to && !first; ++piece) {
-      const double step = (to - from) / kPieces, begin = from + piece * step;
+    const double step = (to - from) / kPieces;
+    for (int piece = 0; piece < kPieces && from <= to; ++piece) {
+      const double begin = from + piece * step;
+      // What was met further on, on a triangle that reaches into an earlier piece, may yet have something before it.
+      if (first && first->distance < begin - start) break;
       const Vec3 p = line.at(begin), q = line.at(begin + step);
       triangles.clear();
       surface.query(Aabb{p.cwiseMin(q), p.cwiseMax(q)}.grown(1e-9 * reach), triangles);

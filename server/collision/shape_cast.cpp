@@ -6,6 +6,7 @@
 
 #include "collision/distance.h"
 #include "collision/narrow_phase.h"
+#include "collision/surface_query.h"
 #include "math/rotation.h"
 
 namespace tumble {
@@ -15,6 +16,10 @@ namespace {
 constexpr int kSteps = 200;
 /// Rounding of one separation, as multiple of epsilon times the lengths involved (gjk.cpp has the count).
 constexpr double kRounding = 32.0 * std::numeric_limits<double>::epsilon();
+
+double rounding_of(const Shape& a, const Shape& b, const Pose& X_AB) {
+  return kRounding * (bounding_radius(a) + bounding_radius(b) + X_AB.p.norm());
+}
 
 /// The plane's distance is linear along the way.
 std::optional<ShapeCastHit> cast_on_half_space(const Shape& a, const Pose& X_AB, const Vec3& way_A) {
@@ -51,15 +56,23 @@ std::optional<ShapeCastHit> judge_start(const Shape& a, const Shape& b, const Po
 
 std::optional<ShapeCastHit> cast_shape(const Shape& a, const Shape& b, const Pose& X_AB, const Vec3& way_A) {
   if (std::holds_alternative<HalfSpace>(b)) return cast_on_half_space(a, X_AB, way_A);
-  const double round_off = kRounding * (bounding_radius(a) + bounding_radius(b) + X_AB.p.norm());
+  if (const TriangleSurface* surface = surface_of(b)) return cast_on_surface(a, *surface, X_AB, way_A);
+  const double round_off = rounding_of(a, b, X_AB);
+  if (compute_distance(a, b, X_AB, {.beyond = round_off}).lower <= round_off) {
+    return judge_start(a, b, X_AB, way_A, round_off);
+  }
+  return cast_from_apart(a, b, X_AB, way_A);
+}
+
+std::optional<ShapeCastHit> cast_from_apart(const Shape& a, const Shape& b, const Pose& X_AB,
+                                            const Vec3& way_A) {
   // Steps end a little short of the plane, where the axis is still well defined; only the last goes all the way.
-  const double ahead = 4.0 * round_off;
+  const double ahead = 4.0 * rounding_of(a, b, X_AB);
   ShapeCastHit hit;
   DistanceSettings settings;
   while (hit.iterations < kSteps) {
     const Pose X_now{X_AB.q, X_AB.p - hit.fraction * way_A};
     const Distance distance = compute_distance(a, b, X_now, settings);
-    if (hit.iterations == 0 && distance.lower <= round_off) return judge_start(a, b, X_AB, way_A, round_off);
     ++hit.iterations;
     if (distance.overlap) break;
     const double closing = distance.axis_A.dot(way_A);

@@ -23,4 +23,8 @@ struct ShapeCastHit {
 /// round-off of the sizes.
 std::optional<ShapeCastHit> cast_shape(const Shape& a, const Shape& b, const Pose& X_AB, const Vec3& way_A);
 
+/// The same for two shapes with ends that are apart at the start: only supports are asked of them.
+std::optional<ShapeCastHit> cast_from_apart(const Shape& a, const Shape& b, const Pose& X_AB,
+                                            const Vec3& way_A);
+
 }  // namespace tumble

@@ -9,6 +9,7 @@
 #include "collision/distance.h"
 #include "collision/ray_cast.h"
 #include "collision/shape_cast.h"
+#include "collision/surface_query.h"
 
 namespace tumble {
 namespace {
@@ -29,7 +30,9 @@ Ray make_ray(const Vec3& origin, const Vec3& direction, double length) {
   return {origin, direction.stableNormalized(), length};
 }
 
-void check_placed(const Shape& shape, const Pose& X_WS) {
+/// Half-spaces and surfaces are things to ask about, not to ask with.
+void check_solid(const Shape& shape, const Pose& X_WS) {
+  if (is_static_only(shape)) refuse(fmt::format("shape: a {} cannot be asked with", shape_name(shape)));
   const std::string problem = check_shape(shape);
   if (!problem.empty()) refuse(fmt::format("shape: {}", problem));
   check_finite("position", X_WS.p);
@@ -92,9 +95,8 @@ struct Sweep {
 std::optional<GeometryHit> cast_on_geometry(const World& world, std::uint32_t index, const Sweep& sweep) {
   const Geometry& geometry = world.geometries()[index];
   const Pose X_WG = world.geometry_pose(geometry);
-  const Quat q_SW = sweep.X_WS.q.conjugate();
-  const Pose X_SG{q_SW * X_WG.q, q_SW * (X_WG.p - sweep.X_WS.p)};
-  const std::optional<ShapeCastHit> hit = cast_shape(sweep.shape, geometry.shape, X_SG, q_SW * sweep.way_W);
+  const std::optional<ShapeCastHit> hit = cast_shape(
+      sweep.shape, geometry.shape, relative_pose(sweep.X_WS, X_WG), sweep.X_WS.q.conjugate() * sweep.way_W);
   if (!hit) return std::nullopt;
   return GeometryHit{index,
                      hit->fraction,
@@ -158,22 +160,22 @@ ClosestPoints reversed(const ClosestPoints& points) {
 
 std::optional<ClosestPoints> closest_of_geometries(const World& world, const Geometry& a, const Geometry& b) {
   const Pose X_WA = world.geometry_pose(a), X_WB = world.geometry_pose(b);
-  const bool endless_a = std::holds_alternative<HalfSpace>(a.shape);
-  if (std::holds_alternative<HalfSpace>(b.shape)) {
-    if (endless_a) return std::nullopt;
-    const auto mirrored = closest_of_geometries(world, b, a);
-    return mirrored ? std::optional(reversed(*mirrored)) : std::nullopt;
-  }
-  if (endless_a) {
+  if (is_static_only(a.shape) && is_static_only(b.shape)) return std::nullopt;
+  if (is_static_only(b.shape)) return reversed(*closest_of_geometries(world, b, a));
+  if (std::holds_alternative<HalfSpace>(a.shape)) {
     const Vec3 n_W = X_WA.q * Vec3::UnitZ();
     const Vec3 lowest_W = X_WB * support(b.shape, X_WB.q.conjugate() * -n_W);
     const double height = n_W.dot(lowest_W - X_WA.p);
     return ClosestPoints{height, lowest_W - height * n_W, lowest_W, n_W};
   }
+  const auto placed = [](const Distance& d, const Pose& X) {
+    return ClosestPoints{d.upper, X * d.a_A, X * d.b_A, X.q * d.axis_A};
+  };
+  if (const TriangleSurface* surface = surface_of(a.shape)) {
+    return reversed(placed(compute_distance(b.shape, *surface, relative_pose(X_WB, X_WA)), X_WB));
+  }
   if (auto overlap = closest_of_overlap(a, X_WA, b, X_WB)) return overlap;
-  const Quat q_AW = X_WA.q.conjugate();
-  const Distance d = compute_distance(a.shape, b.shape, {q_AW * X_WB.q, q_AW * (X_WB.p - X_WA.p)});
-  return ClosestPoints{d.upper, X_WA * d.a_A, X_WA * d.b_A, X_WA.q * d.axis_A};
+  return placed(compute_distance(a.shape, b.shape, relative_pose(X_WA, X_WB)), X_WA);
 }
 
 }  // namespace
@@ -202,16 +204,18 @@ std::vector<QueryHit> cast_ray_through(const World& world, const Vec3& origin, c
 
 std::optional<QueryHit> cast_shape(const World& world, const Shape& shape, const Pose& X_WS, const Vec3& way,
                                    const BodyFilter& filter) {
-  check_placed(shape, X_WS);
+  check_solid(shape, X_WS);
   check_finite("way", way);
-  if (std::holds_alternative<HalfSpace>(shape)) refuse("shape: a half-space cannot be cast");
   return find_first(world, Sweep{shape, X_WS, way}, compute_aabb(shape, X_WS), way, 1.0, filter);
 }
 
 std::vector<BodyId> find_overlapping(const World& world, const Shape& shape, const Pose& X_WS,
                                      const BodyFilter& filter) {
-  check_placed(shape, X_WS);
+  check_solid(shape, X_WS);
   return find_bodies(world, compute_aabb(shape, X_WS), filter, [&](const Geometry& geometry) {
+    if (const TriangleSurface* surface = surface_of(geometry.shape)) {
+      return overlaps_surface(shape, *surface, relative_pose(X_WS, world.geometry_pose(geometry)));
+    }
     PairCache cache;
     NarrowPhaseCounters counters;
     return collide(shape, X_WS, geometry.shape, world.geometry_pose(geometry), 0.0, {}, cache, counters)

@@ -39,23 +39,23 @@ std::vector<QueryHit> cast_ray_through(const World& world, const Vec3& origin, c
                                        double length = kEndless, const BodyFilter& filter = {});
 
 /// What a convex shape at X_WS meets first when it is moved by `way` [m] without turning. However thin, nothing is passed.
-/// What it only touches at the start and is not moved into does not count. Throws for shapes without end and bad values.
+/// What it only touches at the start and is not moved into does not count. Throws for half-spaces, surfaces and bad values.
 std::optional<QueryHit> cast_shape(const World& world, const Shape& shape, const Pose& X_WS, const Vec3& way,
                                    const BodyFilter& filter = {});
 
-/// Bodies that share a point with the shape at X_WS, in order of their slots.
+/// Bodies that share a point with the convex shape at X_WS, in order of their slots. Throws likewise.
 std::vector<BodyId> find_overlapping(const World& world, const Shape& shape, const Pose& X_WS,
                                      const BodyFilter& filter = {});
 /// Bodies of which some geometry's tight axis-aligned bounds share a point with the box, in order of their slots.
 std::vector<BodyId> find_in_box(const World& world, const Aabb& box, const BodyFilter& filter = {});
 
 struct ClosestPoints {
-  double distance = 0.0;         ///< [m]; < 0: overlap, by the depth of the deepest contact.
+  double distance = 0.0;         ///< [m]; < 0: overlap, by the depth of the deepest contact; 0 for surfaces.
   Vec3 p_WA = Vec3::Zero();      ///< On A.
   Vec3 p_WB = Vec3::Zero();      ///< On B.
   Vec3 normal_W = Vec3::Zero();  ///< Unit, from A to B.
 };
-/// None if one of them has no geometry, or none that a distance is defined for (two half-spaces). Throws for stale ids.
+/// None if one of them has no geometry, or both only half-spaces and surfaces. Throws for stale ids.
 std::optional<ClosestPoints> compute_closest_points(const World& world, BodyId a, BodyId b);
 
 }  // namespace tumble

@@ -234,7 +234,6 @@ TEST(Query, FiltersAndNames) {
 
   EXPECT_EQ(find_overlapping(world, Sphere{4.5}, {Quat::Identity(), Vec3(0, 0, 4.5)}),
             (std::vector{low, high}));
-  EXPECT_EQ(find_overlapping(world, HalfSpace{}, {Quat::Identity(), Vec3(0, 0, 2)}), std::vector{low});
   EXPECT_EQ(find_in_box(world, {Vec3(-9, -9, 8.5), Vec3(9, 9, 9)}), std::vector{high});
   world.destroy_body(high);
   EXPECT_EQ(cast_ray(world, from, down)->body, low);
@@ -291,7 +290,8 @@ TEST(Query, BadQuestionsAreRefusedByField) {
   EXPECT_EQ(reason_of([&] { cast_ray(world, Vec3(0, nan, 0), x); }), "origin: must be finite (0 nan 0)");
   EXPECT_EQ(reason_of([&] { cast_ray_through(world, o, x, -1.0); }), "length: must be > 0 (-1)");
   EXPECT_EQ(reason_of([&] { cast_ray(world, o, x, nan); }), "length: must be > 0 (nan)");
-  EXPECT_EQ(reason_of([&] { cast_shape(world, HalfSpace{}, {}, x); }), "shape: a half-space cannot be cast");
+  EXPECT_EQ(reason_of([&] { cast_shape(world, HalfSpace{}, {}, x); }),
+            "shape: a half_space cannot be asked with");
   EXPECT_EQ(reason_of([&] { cast_shape(world, Sphere{-1.0}, {}, x); }),
             "shape: radius: must be finite and > 0, is -1");
   EXPECT_EQ(reason_of([&] { cast_shape(world, Sphere{1.0}, {}, Vec3(0, 0, kEndless)); }),

@@ -10,6 +10,7 @@
 
 #include "collision/axis_preference.h"
 #include "collision/clip.h"
+#include "collision/collide_triangle_hull.h"
 #include "collision/feature_name.h"
 #include "collision/polytope.h"
 #include "collision/segment_contact.h"
@@ -23,21 +24,12 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kParallel = 1e-24;
 /// Cosine above which a direction is the triangle's own normal: what differs is rounding.
 constexpr double kSameNormal = 1.0 - 2e-16;
-/// Sine by which a direction may point into the triangle's plane.
-constexpr double kAlong = 1e-9;
 /// Rounding of a height, as part of the size.
 constexpr double kRounding = 64.0 * std::numeric_limits<double>::epsilon();
 /// Overlap, as part of the body's radius, from which the corners' cones are searched as well. Up to there a wrong guess
 /// near a corner pushes by no more than that.
 constexpr double kDeep = 1e-3;
 constexpr std::size_t kRing = 32;  // edges of a corner that are looked at
-
-std::size_t next(std::size_t k) {
-  return k == 2 ? 0 : k + 1;
-}
-std::size_t previous(std::size_t k) {
-  return k == 0 ? 2 : k - 1;
-}
 
 /// A direction and the features that meet along it.
 struct Meeting {
@@ -52,27 +44,10 @@ struct Meeting {
 
 class TriangleQuery {
  public:
-  TriangleQuery(const Polytope& core, double radius, const TriangleSurface& surface, std::uint32_t part,
-                const Pose& X_AB, double margin)
-      : core_(core),
-        radius_(radius),
-        enough_(margin + radius),
-        margin_(margin),
-        surface_(surface),
-        R_AB_(rotation_matrix(X_AB.q)),
-        p_AB_(X_AB.p),
-        t_(surface.triangle(part)) {
-    const auto place = [&](Vec3& p) { p = R_AB_ * p + p_AB_; };
-    const auto turn = [&](Vec3& d) { d = R_AB_ * d; };
-    turn(t_.normal);
-    for (std::size_t k = 0; k < 3; ++k) {
-      place(t_.corner[k]);
-      if (t_.bend[k] == Bend::open) continue;
-      place(t_.beyond[k]);
-      turn(t_.beyond_normal[k]);
-    }
+  TriangleQuery(const Polytope& core, double radius, const PlacedTriangle& triangle, double margin)
+      : core_(core), radius_(radius), enough_(margin + radius), margin_(margin), t_(triangle) {
     double size2 = 0.0;
-    for (std::size_t k = 0; k < 3; ++k) size2 = std::max(size2, along(k).squaredNorm());
+    for (std::size_t k = 0; k < 3; ++k) size2 = std::max(size2, t_.along(k).squaredNorm());
     preference_ = AxisPreference::of(std::min(core.radius + radius, std::sqrt(size2)));
   }
 
@@ -103,19 +78,7 @@ class TriangleQuery {
   }
 
  private:
-  Vec3 along(std::size_t k) const { return t_.corner[next(k)] - t_.corner[k]; }
   double lowest(const Vec3& c) const { return descend(core_, c, 0, -kInfinity).height; }
-
-  /// Is c (normal to edge k) between the normals of the two sides of the edge?
-  bool edge_allows(std::size_t k, const Vec3& c) const {
-    if (!stays_below(t_.corner[previous(k)], t_.corner[k], c)) return false;
-    return t_.bend[k] == Bend::open ? c.dot(t_.normal) >= 0.0 : stays_below(t_.beyond[k], t_.corner[k], c);
-  }
-  bool corner_allows(std::size_t k, const Vec3& c) const {
-    return c.dot(t_.normal) >= -kAlong && stays_below(t_.corner[next(k)], t_.corner[k], c) &&
-           stays_below(t_.corner[previous(k)], t_.corner[k], c) &&
-           surface_.is_top(t_.vertex[k], R_AB_.transpose() * c);
-  }
 
   /// False if the body is too high above the plane, or behind it.
   bool meet_own_face() {
@@ -130,13 +93,10 @@ class TriangleQuery {
   bool meet_body_faces() {
     for (std::uint32_t i = 0; i < core_.faces.size(); ++i) {
       const Vec3& f = core_.faces[i].normal;
-      std::size_t top = 0;
-      for (std::size_t k = 1; k < 3; ++k) {
-        if (f.dot(t_.corner[k]) < f.dot(t_.corner[top])) top = k;
-      }
+      const std::size_t top = t_.top(-f);
       const double separation = f.dot(t_.corner[top]) - core_.faces[i].offset;
       if (separation > enough_) return false;
-      if (separation <= best_.separation + preference_.face || !corner_allows(top, -f)) continue;
+      if (separation <= best_.separation + preference_.face || !t_.corner_allows(top, -f)) continue;
       best_ = {.kind = Meeting::Kind::body_face, .separation = separation, .c = -f, .body = i, .edge = top};
     }
     return true;
@@ -154,7 +114,7 @@ class TriangleQuery {
   }
 
   void meet_edges(std::size_t k) {
-    const Vec3 own = along(k);
+    const Vec3 own = t_.along(k);
     const Vec3 outward = own.cross(t_.normal);
     const Vec3 between = t_.normal + (t_.bend[k] == Bend::open ? outward.normalized() : t_.beyond_normal[k]);
     for (std::uint32_t i = 0; i < core_.edges.size(); ++i) {
@@ -167,7 +127,7 @@ class TriangleQuery {
       const Vec3 c = across * ((across.dot(between) < 0.0 ? -1.0 : 1.0) / std::sqrt(length2));
       const double offset = c.dot(t_.corner[k]);
       const double height = c.dot(tail) - offset;
-      if (height <= best_.separation || !edge_allows(k, c)) continue;
+      if (height <= best_.separation || !t_.edge_allows(k, c)) continue;
       const double separation = lowest(c) - offset;
       if (height > separation + kRounding * core_.radius) continue;  // another edge is the lowest
       if (best_.kind != Meeting::Kind::edges &&
@@ -185,16 +145,17 @@ class TriangleQuery {
       for (std::size_t k = 0; k < 3; ++k) {
         meet_corner(k, p);
         if (t_.bend[k] == Bend::flat || t_.bend[k] == Bend::concave) continue;
-        const Vec3 side = along(k);
+        const Vec3 side = t_.along(k);
         const double s = side.dot(p - t_.corner[k]) / side.squaredNorm();
         if (!(s > 0.0 && s < 1.0)) continue;
         const Vec3 foot = t_.corner[k] + s * side;
-        consider({.kind = is_segment ? Meeting::Kind::edges : Meeting::Kind::vertex,
-                  .body = is_segment ? 0 : name_crossing(0, 0, t_.vertex[k], t_.vertex[next(k)]),
-                  .edge = k,
-                  .p_body = p,
-                  .p_triangle = foot},
-                 [&](const Vec3& c) { return edge_allows(k, c); });
+        consider(
+            {.kind = is_segment ? Meeting::Kind::edges : Meeting::Kind::vertex,
+             .body = is_segment ? 0 : name_crossing(0, 0, t_.vertex[k], t_.vertex[PlacedTriangle::next(k)]),
+             .edge = k,
+             .p_body = p,
+             .p_triangle = foot},
+            [&](const Vec3& c) { return t_.edge_allows(k, c); });
       }
     }
     if (!is_segment) return;
@@ -212,7 +173,7 @@ class TriangleQuery {
               .edge = k,
               .p_body = p,
               .p_triangle = t_.corner[k]},
-             [&](const Vec3& c) { return corner_allows(k, c); });
+             [&](const Vec3& c) { return t_.corner_allows(k, c); });
   }
 
   /// Takes the line between the two points if it separates most, is allowed, and the core has no lower point along it.
@@ -225,7 +186,7 @@ class TriangleQuery {
     if (meeting.c.dot(t_.normal) >= kSameNormal || !allows(meeting.c)) return;
     for (const Vec3& other : core_.vertices) {
       const Vec3 d = other - meeting.p_body;
-      if (meeting.c.dot(d) < -kAlong * d.norm()) return;
+      if (meeting.c.dot(d) < -PlacedTriangle::kAlong * d.norm()) return;
     }
     best_ = meeting;
   }
@@ -235,8 +196,8 @@ class TriangleQuery {
   void meet_rings() {
     std::array<Vec3, kRing> others;
     for (std::size_t k = 0; k < 3; ++k) {
-      const std::size_t count = surface_.ring(t_.vertex[k], others);
-      for (std::size_t i = 0; i < count; ++i) others[i] = R_AB_ * others[i] + p_AB_ - t_.corner[k];
+      const std::size_t count = t_.surface.ring(t_.vertex[k], others);
+      for (std::size_t i = 0; i < count; ++i) others[i] = t_.R_AB * others[i] + t_.p_AB - t_.corner[k];
       for (std::size_t i = 0; i < count; ++i) {
         for (std::size_t j = 0; j < i; ++j) meet_cone(k, others[i].cross(others[j]));
         for (const ConvexHull::Edge& edge : core_.edges) {
@@ -250,9 +211,9 @@ class TriangleQuery {
     const double length = across.norm();
     if (!(length > 0.0)) return;
     for (const Vec3& c : {Vec3(across / length), Vec3(across / -length)}) {
-      if (c.dot(t_.normal) < -kAlong) continue;
+      if (c.dot(t_.normal) < -PlacedTriangle::kAlong) continue;
       const double separation = lowest(c) - c.dot(t_.corner[k]);
-      if (separation <= best_.separation + preference_.edge || !corner_allows(k, c)) continue;
+      if (separation <= best_.separation + preference_.edge || !t_.corner_allows(k, c)) continue;
       best_ = {.kind = Meeting::Kind::neighbour, .separation = separation, .c = c, .edge = k};
     }
   }
@@ -284,10 +245,10 @@ class TriangleQuery {
   }
 
   Manifold lie_on_triangle() const {
-    FacePlane plane{t_.corner[0], along(0).normalized(), {}, t_.normal, t_.normal};
+    FacePlane plane{t_.corner[0], t_.along(0).normalized(), {}, t_.normal, t_.normal};
     plane.v_A = plane.n_A.cross(plane.u_A);
     ClipPolygon polygon(false);
-    double width = triangle_width();
+    double width = t_.width();
     if (core_.faces.empty()) {
       for (std::uint32_t i = 0; i < core_.vertices.size(); ++i) {
         polygon.add_vertex(plane.to_plane(core_.vertices[i]), i);
@@ -305,10 +266,11 @@ class TriangleQuery {
     polygon.close();
     const ContactTolerance tolerance = ContactTolerance::of(width);
     for (std::size_t k = 0; k < 3; ++k) {
-      auto side = side_between(plane.to_plane(t_.corner[k]), plane.to_plane(t_.corner[next(k)]));
+      auto side =
+          side_between(plane.to_plane(t_.corner[k]), plane.to_plane(t_.corner[PlacedTriangle::next(k)]));
       if (!side) continue;
       side->tail = t_.vertex[k];
-      side->head = t_.vertex[next(k)];
+      side->head = t_.vertex[PlacedTriangle::next(k)];
       side->mark = 1u << k;
       polygon.cut(*side, tolerance.inside);
     }
@@ -326,8 +288,7 @@ class TriangleQuery {
       polygon.add_vertex(plane.to_plane(t_.corner[k]), t_.vertex[k], 1u << k);
     }
     polygon.close();
-    const ContactTolerance tolerance =
-        ContactTolerance::of(std::min(face_width(core_, face), triangle_width()));
+    const ContactTolerance tolerance = ContactTolerance::of(std::min(face_width(core_, face), t_.width()));
     for (std::size_t i = 0; i < loop.size(); ++i) {
       const std::uint32_t tail = loop[i], head = loop[i + 1 == loop.size() ? 0 : i + 1];
       auto side = side_between(plane.to_plane(core_.vertices[tail]), plane.to_plane(core_.vertices[head]));
@@ -343,28 +304,21 @@ class TriangleQuery {
     const ConvexHull::Edge& edge = core_.edges[best_.body];
     const Vec3 &tail = core_.vertices[edge.tail], &head = core_.vertices[edge.head];
     const Segment a{0.5 * (tail + head), 0.5 * (head - tail)};
-    const Segment b{0.5 * (t_.corner[best_.edge] + t_.corner[next(best_.edge)]), 0.5 * along(best_.edge)};
+    const Segment b{0.5 * (t_.corner[best_.edge] + t_.corner[PlacedTriangle::next(best_.edge)]),
+                    0.5 * t_.along(best_.edge)};
     const ContactTolerance tolerance = ContactTolerance::of(std::min(a.reach.norm(), b.reach.norm()));
     // The best of the allowed directions need not be one in which the two features meet.
     const SegmentPair closest = closest_points(a, b);
     const Vec3 gap = closest.p_A - closest.p_B;
     if ((gap - gap.dot(best_.c) * best_.c).norm() > tolerance.merge) return {};
-    return make_segment_manifold(
-        {a, radius_}, {b, 0.0}, -best_.c, margin_, tolerance.merge,
-        name_crossing(edge.tail, edge.head, t_.vertex[best_.edge], t_.vertex[next(best_.edge)]));
-  }
-
-  double triangle_width() const {
-    const double perimeter = along(0).norm() + along(1).norm() + along(2).norm();
-    return along(0).cross(along(1)).norm() / perimeter;
+    return make_segment_manifold({a, radius_}, {b, 0.0}, -best_.c, margin_, tolerance.merge,
+                                 name_crossing(edge.tail, edge.head, t_.vertex[best_.edge],
+                                               t_.vertex[PlacedTriangle::next(best_.edge)]));
   }
 
   const Polytope& core_;
   const double radius_, enough_, margin_;  // [m]
-  const TriangleSurface& surface_;
-  const Mat3 R_AB_;
-  const Vec3 p_AB_;
-  SurfaceTriangle t_;  // in A
+  const PlacedTriangle& t_;
   AxisPreference preference_;
   Meeting best_;
 };
@@ -377,8 +331,9 @@ Manifold collide_triangle(const Shape& a, const TriangleSurface& b, std::uint32_
   static constexpr std::array<std::uint32_t, 3> kSegmentOffsets = {0, 1, 2};
   static constexpr std::array<std::uint32_t, 2> kSegmentNeighbours = {1, 0};
   static constexpr std::array<ConvexHull::Edge, 1> kSegmentEdges = {{{0, 1, 0, 0}}};
+  const PlacedTriangle triangle(b, part, X_AB);
   const auto query = [&](const Polytope& core, double radius) {
-    return TriangleQuery(core, radius, b, part, X_AB, margin).run();
+    return TriangleQuery(core, radius, triangle, margin).run();
   };
   if (const auto* sphere = std::get_if<Sphere>(&a)) {
     const std::array<Vec3, 1> centre = {Vec3::Zero()};
@@ -394,7 +349,7 @@ Manifold collide_triangle(const Shape& a, const TriangleSurface& b, std::uint32_
     return query(features.view(), 0.0);
   }
   if (const auto* hull = std::get_if<HullPointer>(&a)) return query(view_of(**hull), 0.0);
-  return {};
+  return is_static_only(a) ? Manifold{} : collide_triangle_hull(a, triangle, margin);
 }
 
 }  // namespace tumble

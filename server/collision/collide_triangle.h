@@ -8,7 +8,8 @@
 
 namespace tumble {
 
-/// Sphere, capsule, box or hull A against triangle `part` of surface B at X_AB. A body whose middle (between its furthest
+/// Convex shape A against triangle `part` of surface B at X_AB. Sphere, capsule, box and hull are searched exactly, others
+/// go through collide_triangle_hull. A body whose middle (between its furthest
 /// points along the triangle's normal) is behind the triangle's plane is not held by the triangle's face.
 Manifold collide_triangle(const Shape& a, const TriangleSurface& b, std::uint32_t part, const Pose& X_AB,
                           double margin);

@@ -2,6 +2,7 @@
 // contacts that the box gives as a solid.
 #include <gtest/gtest.h>
 
+#include "collision/collide_triangle_hull.h"
 #include "collision/narrow_phase.h"
 #include "math/rotation.h"
 #include "sample_hulls.h"
@@ -178,6 +179,31 @@ TEST(CollideTriangle, ASwappedQueryIsTheSameContactTurnedRound) {
       }
     }
     EXPECT_GT(contacts, 5) << body.name;
+  }
+}
+
+// Shapes without a search of their own take the way through a flat hull; here the sphere takes it too.
+TEST(CollideTriangle, TheWayThroughAHullAgreesWithTheExactOne) {
+  const Sphere sphere{0.3};
+  for (const TriangleMeshPointer& mesh : {box_mesh(Vec3(0.8, 0.6, 0.5), 2), flat_mesh(12, 0.3, true)}) {
+    RandomPose random(39);
+    int contacts = 0;
+    for (int i = 0; i < 3000; ++i) {
+      const Pose X = random.pose(1.0);
+      const std::vector<Touch> exact = touches_with(sphere, X, mesh, 0.02);
+      if (exact.empty()) continue;
+      std::vector<Touch> touches;
+      for (std::uint32_t part = 0; part < mesh->triangle_count(); ++part) {
+        const PlacedTriangle triangle(*mesh, part, relative_pose(X, Pose{}));
+        append(collide_triangle_hull(sphere, triangle, 0.02), X, touches);
+      }
+      const Touch *expected = deepest_of(exact), *found = deepest_of(touches);
+      ASSERT_NE(found, nullptr) << i << " " << expected->separation;
+      EXPECT_NEAR(found->separation, expected->separation, 1e-14) << i;
+      EXPECT_LE((found->normal_W - expected->normal_W).norm(), 1e-13) << i;
+      ++contacts;
+    }
+    EXPECT_GT(contacts, 100);
   }
 }
 

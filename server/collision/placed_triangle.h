@@ -1,0 +1,58 @@
+// A triangle of a surface in the frame of the body A that meets it, with the question all contact with surfaces turns on:
+// may the surface push along this direction here?
+#pragma once
+
+#include "collision/triangle_surface.h"
+#include "math/pose.h"
+#include "math/rotation.h"
+
+namespace tumble {
+
+struct PlacedTriangle : SurfaceTriangle {
+  PlacedTriangle(const TriangleSurface& of, std::uint32_t part, const Pose& X_AB)
+      : SurfaceTriangle(of.triangle(part)), surface(of), R_AB(rotation_matrix(X_AB.q)), p_AB(X_AB.p) {
+    normal = R_AB * normal;
+    for (std::size_t k = 0; k < 3; ++k) {
+      corner[k] = R_AB * corner[k] + p_AB;
+      if (bend[k] == Bend::open) continue;
+      beyond[k] = R_AB * beyond[k] + p_AB;
+      beyond_normal[k] = R_AB * beyond_normal[k];
+    }
+  }
+
+  static std::size_t next(std::size_t k) { return k == 2 ? 0 : k + 1; }
+  static std::size_t previous(std::size_t k) { return k == 0 ? 2 : k - 1; }
+  Vec3 along(std::size_t k) const { return corner[next(k)] - corner[k]; }
+  /// Corner that is furthest along c.
+  std::size_t top(const Vec3& c) const {
+    std::size_t best = 0;
+    for (std::size_t k = 1; k < 3; ++k) {
+      if (c.dot(corner[k]) > c.dot(corner[best])) best = k;
+    }
+    return best;
+  }
+  /// Across the triangle where it is narrow [m].
+  double width() const {
+    return along(0).cross(along(1)).norm() / (along(0).norm() + along(1).norm() + along(2).norm());
+  }
+
+  /// Is c (unit, normal to edge k) between the normals of the two sides of the edge?
+  bool edge_allows(std::size_t k, const Vec3& c) const {
+    if (!stays_below(corner[previous(k)], corner[k], c)) return false;
+    return bend[k] == Bend::open ? c.dot(normal) >= 0.0 : stays_below(beyond[k], corner[k], c);
+  }
+  /// Is c (unit) within the cone of corner k, in which the surface is furthest out there?
+  bool corner_allows(std::size_t k, const Vec3& c) const {
+    return c.dot(normal) >= -kAlong && stays_below(corner[next(k)], corner[k], c) &&
+           stays_below(corner[previous(k)], corner[k], c) && surface.is_top(vertex[k], R_AB.transpose() * c);
+  }
+
+  /// Sine by which a direction may point into the triangle's plane.
+  static constexpr double kAlong = 1e-9;
+
+  const TriangleSurface& surface;
+  Mat3 R_AB;
+  Vec3 p_AB;
+};
+
+}  // namespace tumble

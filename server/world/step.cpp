@@ -7,6 +7,27 @@
 #include "world/world.h"
 
 namespace tumble {
+namespace {
+
+/// Neighbouring triangles of a surface name a point on their common edge or corner alike. It counts once for each normal
+/// (equal up to 1e-6 rad), for the first triangle in order.
+void drop_repeated_points(std::vector<Contact>& contacts, std::uint32_t index) {
+  Contact& contact = contacts[index];
+  Manifold& manifold = contact.manifold;
+  for (std::uint32_t i = index; i-- > 0 && manifold.count > 0;) {
+    const Contact& before = contacts[i];
+    if (before.pair.a != contact.pair.a || before.pair.b != contact.pair.b) return;
+    if ((before.normal_W - contact.normal_W).squaredNorm() > 1e-12) continue;
+    const auto named_before = [&](const ManifoldPoint& point) {
+      const auto begin = before.manifold.points.begin(), end = begin + before.manifold.count;
+      return std::any_of(begin, end, [&](const ManifoldPoint& p) { return p.feature == point.feature; });
+    };
+    const auto begin = manifold.points.begin();
+    manifold.count = static_cast<int>(std::remove_if(begin, begin + manifold.count, named_before) - begin);
+  }
+}
+
+}  // namespace
 
 void World::step() {
   step([](Stage) {});
@@ -173,9 +194,10 @@ void World::update_contacts(const StepContext& step) {
     contact.manifold =
         collide(a.shape, X_WA, b.shape, geometry_pose(b), pair_margin(contact, step.h), options_.narrow_phase,
                 contact.cache, counters_.narrow_phase, contact.pair.part);
+    contact.normal_W = X_WA.q * contact.manifold.normal_A;
+    if (contact.pair.part > 0) drop_repeated_points(contacts_.all(), index);
     if (contact.manifold.count == 0) continue;
     const auto old_impulse = contact.impulse;
-    contact.normal_W = X_WA.q * contact.manifold.normal_A;
     transport_impulses(old_manifold, old_impulse, contact.manifold, contact.normal_W, a.contact_margin,
                        contact.impulse);
     wake_slot(contact.body_a);

@@ -4,6 +4,7 @@
 // features. Directions that only lead to a neighbour's normal are left to the neighbour. Everything in A's frame.
 #include "collision/collide_triangle.h"
 
+#include <algorithm>
 #include <array>
 #include <limits>
 #include <optional>
@@ -195,23 +196,30 @@ class TriangleQuery {
   /// wins in a corner's cone belongs to the triangles around it.
   void meet_rings() {
     std::array<Vec3, kRing> others;
+    const Vec3& low = core_.vertices[descend(core_, best_.c, 0, -kInfinity).vertex];
     for (std::size_t k = 0; k < 3; ++k) {
       const std::size_t count = t_.surface.ring(t_.vertex[k], others);
       for (std::size_t i = 0; i < count; ++i) others[i] = t_.R_AB * others[i] + t_.p_AB - t_.corner[k];
+      // Where nothing falls away from the triangle's plane the cone is its normal.
+      const auto falls_away = [&](const Vec3& d) { return t_.normal.dot(d) < -kFlatBend * d.norm(); };
+      if (std::none_of(others.begin(), others.begin() + static_cast<std::ptrdiff_t>(count), falls_away))
+        continue;
       for (std::size_t i = 0; i < count; ++i) {
-        for (std::size_t j = 0; j < i; ++j) meet_cone(k, others[i].cross(others[j]));
+        for (std::size_t j = 0; j < i; ++j) meet_cone(k, low, others[i].cross(others[j]));
         for (const ConvexHull::Edge& edge : core_.edges) {
-          meet_cone(k, others[i].cross(core_.vertices[edge.head] - core_.vertices[edge.tail]));
+          meet_cone(k, low, others[i].cross(core_.vertices[edge.head] - core_.vertices[edge.tail]));
         }
       }
     }
   }
 
-  void meet_cone(std::size_t k, const Vec3& across) {
+  void meet_cone(std::size_t k, const Vec3& low, const Vec3& across) {
     const double length = across.norm();
     if (!(length > 0.0)) return;
     for (const Vec3& c : {Vec3(across / length), Vec3(across / -length)}) {
       if (c.dot(t_.normal) < -PlacedTriangle::kAlong) continue;
+      // Any one point of the body bounds the separation from above.
+      if (c.dot(low - t_.corner[k]) <= best_.separation + preference_.edge) continue;
       const double separation = lowest(c) - c.dot(t_.corner[k]);
       if (separation <= best_.separation + preference_.edge || !t_.corner_allows(k, c)) continue;
       best_ = {.kind = Meeting::Kind::neighbour, .separation = separation, .c = c, .edge = k};

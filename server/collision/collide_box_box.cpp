@@ -16,7 +16,7 @@ namespace {
 /// kNearlyParallel is evaluated with all six extents, since its unit axis is rounded.
 constexpr double kParallel = 1e-24, kNearlyParallel = 1e-6;
 /// Axes whose separations differ by less than this share of the sizes are equal but for rounding: the first one stays.
-constexpr double kTie = 1e-15;
+constexpr double kTie = 1e-14;
 /// Cosine of 0.1 rad. Edges that cross under faces as flat as this to their axis lie in a contact of these faces: it
 /// keeps the faces' whole polygon of points, only measured along the edges' axis.
 constexpr double kFlat = 0.995;
@@ -147,10 +147,12 @@ Manifold clip_faces(const BoxPair& pair, const Axis& axis, const BoxFace& face_a
   }
   polygon.close();
 
-  const double width = std::min({h[k1], h[k2], h_incident[(incident.k + 1) % 3], h_incident[(incident.k + 2) % 3]});
+  const double width =
+      std::min({h[k1], h[k2], h_incident[(incident.k + 1) % 3], h_incident[(incident.k + 2) % 3]});
   const ContactTolerance tolerance = ContactTolerance::of(width);
   // Sides in the order +u, +v, -u, -v, each from its lower to its upper corner as the loop runs for sign > 0.
-  const std::uint32_t bit1 = 1u << k1, bit2 = 1u << k2, base = static_cast<std::uint32_t>(reference.sign > 0.0) << k;
+  const std::uint32_t bit1 = 1u << k1, bit2 = 1u << k2,
+                      base = static_cast<std::uint32_t>(reference.sign > 0.0) << k;
   const std::array<ClipSide, 4> sides = {{{1, 0, h[k1], base | bit1, base | bit1 | bit2},
                                           {0, 1, h[k2], base | bit1 | bit2, base | bit2},
                                           {-1, 0, h[k1], base | bit2, base},
@@ -188,7 +190,8 @@ Manifold make_manifold(const BoxPair& pair, const Axis& axis, double margin) {
   const BoxFace face_b = BoxFace::towards(pair.R.transpose() * -axis.normal_A);
   const bool flat = face_a.cosine > kFlat && face_b.cosine > kFlat;
   if (axis.kind == Axis::Kind::edges && !flat) return cross_edges(pair, axis, margin);
-  return clip_faces(pair, axis, face_a, face_b, axis.kind == Axis::Kind::face_a || face_a.cosine > kFlat, margin);
+  return clip_faces(pair, axis, face_a, face_b, axis.kind == Axis::Kind::face_a || face_a.cosine > kFlat,
+                    margin);
 }
 
 }  // namespace

@@ -2,11 +2,11 @@
 // ends to faces and of the whole to edges. Inside, the separating axes do: face normals and edge x core.
 #include "collision/collide_capsule.h"
 
+#include <array>
 #include <limits>
 
-#include "collision/axis_preference.h"
-#include "collision/clip.h"
 #include "collision/feature_name.h"
+#include "collision/manifold_builder.h"
 #include "collision/polytope.h"
 #include "collision/segment_contact.h"
 #include "math/rotation.h"
@@ -17,76 +17,112 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// sin^2 of the angle between core and edge below which their common normal is noise.
 constexpr double kParallel = 1e-24;
-/// Cosine of 1e-3 rad: a core that crosses an edge with less tilt lies on the face (the error is 5e-7 of the radius).
-constexpr double kFlat = 1.0 - 5e-7;
+/// Cosine of 0.1 rad: a face this flat to the normal carries the core with both its ends, measured along that normal.
+constexpr double kFlat = 0.995;
+/// Share of the radii below which two separations are equal: the rounding of one is a few 1e-16.
+constexpr double kTie = 1e-15;
+/// Faces whose heights are kept; those of larger hulls are computed again where needed.
+constexpr std::size_t kKeptFaces = 512;
+/// In place of an edge in Meeting.
+constexpr std::uint32_t kNone = 0xffffffffu;
+
+/// Heights of the core over the polytope's faces: its centre's, and how much its end at +1 is higher.
+class CoreHeights {
+ public:
+  struct Height {
+    double centre, rise;
+    double low() const { return centre - std::abs(rise); }
+    double high() const { return centre + std::abs(rise); }
+    double at(double s) const { return centre + s * rise; }
+  };
+  CoreHeights(const Polytope& polytope, const Segment& core) : polytope_(polytope), core_(core) {
+    const std::size_t kept = std::min(polytope.faces.size(), kKeptFaces);
+    for (std::size_t i = 0; i < kept; ++i) heights_[i] = compute(i);
+  }
+  Height operator[](std::size_t face) const { return face < kKeptFaces ? heights_[face] : compute(face); }
+
+ private:
+  Height compute(std::size_t i) const {
+    const ConvexHull::Face& face = polytope_.faces[i];
+    return {face.normal.dot(core_.centre) - face.offset, face.normal.dot(core_.reach)};
+  }
+  const Polytope& polytope_;
+  const Segment& core_;
+  std::array<Height, kKeptFaces> heights_;
+};
 
 /// Where the core meets the polytope, in the polytope's frame P; the normal points from the polytope to the core.
 struct Meeting {
   double distance = -kInfinity;
   Vec3 normal_P = Vec3::UnitZ();
-  std::uint32_t index = 0;  // of the face or edge
+  std::uint32_t edge = kNone;  ///< Or else a face.
+  std::uint32_t face = 0;
 };
 
-Meeting find_face(const Polytope& polytope, const Segment& core, double enough, double preference) {
+/// The face that separates most, the first of equals.
+Meeting find_face(const Polytope& polytope, const CoreHeights& heights, double tie) {
   Meeting best;
   for (std::uint32_t i = 0; i < polytope.faces.size(); ++i) {
-    const ConvexHull::Face& face = polytope.faces[i];
-    const double height = face.normal.dot(core.centre) - std::abs(face.normal.dot(core.reach)) - face.offset;
-    if (height <= best.distance + preference) continue;
-    best = {height, face.normal, i};
-    if (height > enough) return best;
+    if (heights[i].low() > best.distance + tie) best.distance = heights[i].low(), best.face = i;
   }
+  best.normal_P = polytope.faces[best.face].normal;
   return best;
 }
 
-/// The best axis across the core and an edge whose normals lie on both sides of the plane across the core.
-Meeting find_crossing(const Polytope& polytope, const Segment& core) {
+/// The best axis across the core and an edge whose normals lie on both sides of the plane across the core. Edges whose
+/// axes can't separate more than `needed` are left out: along the arc between two normals the overlap with any point of
+/// the core is at least the smaller of its ends, as long as both are overlaps.
+Meeting find_crossing(const Polytope& polytope, const Segment& core, const CoreHeights& heights,
+                      double needed) {
   Meeting best;
   for (std::uint32_t i = 0; i < polytope.edges.size(); ++i) {
     const ConvexHull::Edge& edge = polytope.edges[i];
-    const Vec3& left = polytope.faces[edge.left_face].normal;
-    const Vec3& right = polytope.faces[edge.right_face].normal;
-    if (left.dot(core.reach) * right.dot(core.reach) >= 0.0) continue;
+    const CoreHeights::Height left = heights[edge.left_face], right = heights[edge.right_face];
+    if (left.rise * right.rise >= 0.0) continue;
+    const double limit = std::min(0.0, std::max(needed, best.distance));
+    if (std::max(left.at(1.0), right.at(1.0)) < limit || std::max(left.at(-1.0), right.at(-1.0)) < limit)
+      continue;
     const Vec3& tail = polytope.vertices[edge.tail];
     const Vec3 along = polytope.vertices[edge.head] - tail;
     const Vec3 across = along.cross(core.reach);
     const double length2 = across.squaredNorm();
     if (length2 <= kParallel * along.squaredNorm() * core.reach.squaredNorm()) continue;
-    const double sign = across.dot(left + right) < 0.0 ? -1.0 : 1.0;
+    const double sign =
+        across.dot(polytope.faces[edge.left_face].normal + polytope.faces[edge.right_face].normal) < 0.0
+            ? -1.0
+            : 1.0;
     const Vec3 normal = across * (sign / std::sqrt(length2));
     const double height = normal.dot(core.centre - tail) - std::abs(normal.dot(core.reach));
-    if (height > best.distance) best = {height, normal, i};
+    if (height > best.distance) best = {height, normal, i, 0};
   }
   return best;
 }
 
-/// Closest features of a core that is outside. `index` is that of the edge, if an edge is nearest.
-struct Closest {
-  Meeting meeting;
-  Vec3 foot_P, on_core_P;
-  bool on_edge = false;
-};
-
-Closest find_closest(const Polytope& polytope, const Segment& core) {
-  Closest best;
-  best.meeting.distance = kInfinity;
+/// The nearest place of a polytope to a core that is outside. An end of the core can only be nearest to the inside of the
+/// face that it is highest over, since no distance is below a height; all else is edge against core.
+Meeting find_closest(const Polytope& polytope, const Segment& core, const CoreHeights& heights) {
+  Meeting best;
+  best.distance = kInfinity;
   for (const double side : {-1.0, 1.0}) {
-    const Vec3 end = core.at(side);
-    const PointDistance near = compute_distance(polytope, end, best.meeting.distance);
-    if (near.distance < best.meeting.distance) {
-      best = {{near.distance, near.normal, near.feature}, near.foot, end, false};
+    std::uint32_t face = 0;
+    for (std::uint32_t i = 1; i < polytope.faces.size(); ++i) {
+      if (heights[i].at(side) > heights[face].at(side)) face = i;
+    }
+    const double height = heights[face].at(side);
+    if (height > 0.0 && height < best.distance && is_over_face(polytope, face, core.at(side))) {
+      best = {height, polytope.faces[face].normal, kNone, face};
     }
   }
   for (std::uint32_t i = 0; i < polytope.edges.size(); ++i) {
-    const Vec3& tail = polytope.vertices[polytope.edges[i].tail];
-    const Vec3& head = polytope.vertices[polytope.edges[i].head];
-    const Segment edge{0.5 * (tail + head), 0.5 * (head - tail)};
-    const SegmentPair pair = closest_points(core, edge);
+    const ConvexHull::Edge& edge = polytope.edges[i];
+    const CoreHeights::Height left = heights[edge.left_face], right = heights[edge.right_face];
+    if (std::max(left.low(), right.low()) >= best.distance || std::max(left.high(), right.high()) <= 0.0)
+      continue;
+    const Vec3 &tail = polytope.vertices[edge.tail], &head = polytope.vertices[edge.head];
+    const SegmentPair pair = closest_points(core, {0.5 * (tail + head), 0.5 * (head - tail)});
     const Vec3 apart = pair.p_A - pair.p_B;
     const double distance = apart.norm();
-    if (distance > 0.0 && distance < best.meeting.distance) {
-      best = {{distance, apart / distance, i}, pair.p_B, pair.p_A, true};
-    }
+    if (distance > 0.0 && distance < best.distance) best = {distance, apart / distance, i, 0};
   }
   return best;
 }
@@ -99,82 +135,88 @@ struct CapsuleQuery {
   double margin;
 };
 
-/// The part of the core that lies over the face, as one or two points.
-Manifold lie_on_face(const CapsuleQuery& q, const Meeting& meeting) {
-  const ConvexHull::Face& face = q.polytope.faces[meeting.index];
+/// The part of the core that lies over the face along the normal, as up to two points. Named by the core's end, or by
+/// the edge over which it leaves the face.
+Manifold lie_on_face(const CapsuleQuery& q, std::uint32_t index, const Vec3& normal_P) {
+  const ConvexHull::Face& face = q.polytope.faces[index];
   const ContactTolerance tolerance = ContactTolerance::of(face_width(q.polytope, face));
-  double low = -1.0, high = 1.0;
+  struct End {
+    double s;
+    std::uint32_t name;
+  };
+  End low{-1.0, name_vertex(true, 0)}, high{1.0, name_vertex(true, 1)};
   bool over_face = true;
+  const double slope = face.normal.dot(normal_P);
+  const auto gap_at = [&](double s) { return (face.normal.dot(q.core_P.at(s)) - face.offset) / slope; };
+  // The foot of the core on the face along the normal.
+  const Vec3 reach = q.core_P.reach - (face.normal.dot(q.core_P.reach) / slope) * normal_P;
+  const Vec3 centre = q.core_P.centre - gap_at(0.0) * normal_P;
   const auto loop = q.polytope.loop(face);
   for (std::size_t i = 0; i < loop.size(); ++i) {
-    const Vec3& tail = q.polytope.vertices[loop[i]];
-    const Vec3 along = q.polytope.vertices[loop[i + 1 == loop.size() ? 0 : i + 1]] - tail;
+    const std::uint32_t from = loop[i], to = loop[i + 1 == loop.size() ? 0 : i + 1];
+    const Vec3 along = q.polytope.vertices[to] - q.polytope.vertices[from];
     const Vec3 outward = direction_or(along.cross(face.normal), Vec3::Zero());
-    const double centre = outward.dot(q.core_P.centre - tail), slope = outward.dot(q.core_P.reach);
-    const double low_side = centre + low * slope, high_side = centre + high * slope;
+    const double distance = outward.dot(centre - q.polytope.vertices[from]), rise = outward.dot(reach);
+    const double low_side = distance + low.s * rise, high_side = distance + high.s * rise;
     const bool low_out = low_side > tolerance.inside, high_out = high_side > tolerance.inside;
     over_face = over_face && !(low_out && high_out);
-    if (low_out) low = high_side < 0.0 ? -centre / slope : high;
-    if (high_out) high = low_side < 0.0 ? -centre / slope : low;
+    const std::uint32_t name = name_crossing(0, 1, from, to);
+    if (low_out) low = {high_side < 0.0 ? -distance / rise : high.s, name};
+    if (high_out) high = {low_side < 0.0 ? -distance / rise : low.s, name};
   }
-  const Vec3 normal_A = q.X_AP.q * -face.normal;
-  ManifoldBuilder builder(normal_A, q.margin, tolerance.merge);
-  const auto add = [&](double s, std::uint32_t id) {
-    const Vec3 p = q.core_P.at(s);
-    const double height = face.normal.dot(p) - face.offset;
-    builder.add(q.X_AP * (p - (0.5 * (height + q.radius)) * face.normal), height - q.radius,
-                mix_features(meeting.index, id, 2));
-  };
+  ManifoldBuilder builder(q.X_AP.q * -normal_P, q.margin, tolerance.merge);
   if (over_face) {
-    add(low, 0);
-    add(high, 1);
+    for (const End& end : {low, high}) {
+      const double gap = gap_at(end.s);
+      const Vec3 middle_P = q.core_P.at(end.s) - (0.5 * (gap + q.radius)) * normal_P;
+      builder.add(q.X_AP * middle_P, gap - q.radius, end.name);
+    }
   }
-  if (builder.count() == 0) add(face.normal.dot(q.core_P.reach) > 0.0 ? -1.0 : 1.0, 2);
   return builder.finish();
 }
 
-Manifold lie_on_edge(const CapsuleQuery& q, const Vec3& normal_P, std::uint32_t index) {
-  const Vec3 tail = q.X_AP * q.polytope.vertices[q.polytope.edges[index].tail];
-  const Vec3 head = q.X_AP * q.polytope.vertices[q.polytope.edges[index].head];
-  const Segment edge{0.5 * (tail + head), 0.5 * (head - tail)};
+Manifold meet_edge(const CapsuleQuery& q, const Meeting& meeting) {
+  const ConvexHull::Edge& edge = q.polytope.edges[meeting.edge];
+  const Vec3 tail = q.X_AP * q.polytope.vertices[edge.tail], head = q.X_AP * q.polytope.vertices[edge.head];
+  const Segment segment{0.5 * (tail + head), 0.5 * (head - tail)};
   const Segment core{q.X_AP * q.core_P.centre, q.X_AP.q * q.core_P.reach};
-  const double merge = ContactTolerance::of(edge.reach.norm()).merge;
-  return make_segment_manifold({core, q.radius}, {edge, 0.0}, q.X_AP.q * -normal_P, q.margin, merge,
-                               mix_features(index, 0, 3));
+  return make_segment_manifold({core, q.radius}, {segment, 0.0}, q.X_AP.q * -meeting.normal_P, q.margin,
+                               ContactTolerance::of(segment.reach.norm()).merge,
+                               name_crossing(0, 1, edge.tail, edge.head));
+}
+
+Manifold make_manifold(const CapsuleQuery& q, const Meeting& meeting) {
+  std::uint32_t face = meeting.face;
+  if (meeting.edge != kNone) {
+    face = flatter_face(q.polytope, q.polytope.edges[meeting.edge], meeting.normal_P);
+  }
+  Manifold manifold;
+  if (q.polytope.faces[face].normal.dot(meeting.normal_P) > kFlat)
+    manifold = lie_on_face(q, face, meeting.normal_P);
+  if (manifold.count == 0 && meeting.edge != kNone) manifold = meet_edge(q, meeting);
+  set_deepest(manifold, meeting.distance - q.radius);
+  return manifold;
 }
 
 Manifold collide_core(const CapsuleQuery& q, PairCache& cache) {
   const double enough = q.radius + q.margin;
-  const AxisPreference preference = AxisPreference::of(std::min(q.polytope.radius, q.radius));
+  const double tie = kTie * (q.polytope.radius + q.radius + q.core_P.reach.norm());
   const auto remember = [&](const Meeting& meeting) {
     cache.axis_A = q.X_AP.q * -meeting.normal_P;
     cache.gap = meeting.distance - q.radius;
   };
-  const Meeting face = find_face(q.polytope, q.core_P, enough, preference.face);
-  remember(face);
-  if (face.distance > enough) return {};
-  const Meeting crossing = find_crossing(q.polytope, q.core_P);
-  if (crossing.distance > enough) {
-    remember(crossing);
-    return {};
+  const CoreHeights heights(q.polytope, q.core_P);
+  Meeting best = find_face(q.polytope, heights, tie);
+  remember(best);
+  if (best.distance > enough) return {};
+  if (best.distance <= 0.0) {
+    const Meeting crossing = find_crossing(q.polytope, q.core_P, heights, best.distance);
+    if (crossing.distance > best.distance + tie) best = crossing;
+    remember(best);
   }
-  if (std::max(face.distance, crossing.distance) <= 0.0) {
-    if (!preference.takes_edge(face.distance, face.normal_P, crossing.distance, crossing.normal_P, 1.0)) {
-      return lie_on_face(q, face);
-    }
-    return lie_on_edge(q, crossing.normal_P, crossing.index);
-  }
-  const Closest closest = find_closest(q.polytope, q.core_P);
-  const Meeting& nearest = closest.meeting;
-  remember(nearest);
-  if (nearest.distance > enough) return {};
-  const bool lies_flat = closest.on_edge && nearest.normal_P.dot(face.normal_P) > kFlat;
-  if (lies_flat || nearest.normal_P == face.normal_P) return lie_on_face(q, face);
-  if (closest.on_edge) return lie_on_edge(q, nearest.normal_P, nearest.index);
-  const double separation = nearest.distance - q.radius;
-  const Vec3 middle_P = closest.foot_P + (0.5 * separation) * nearest.normal_P;
-  return single_point(q.X_AP.q * -nearest.normal_P, q.X_AP * middle_P, separation, q.margin,
-                      mix_features(nearest.index, 0, 4));
+  if (best.distance > 0.0) best = find_closest(q.polytope, q.core_P, heights);
+  remember(best);
+  return best.distance > enough ? Manifold{} : make_manifold(q, best);
 }
 
 Manifold collide_polytope(const Capsule& a, const Polytope& b, const Pose& X_AB, double margin,

@@ -3,8 +3,8 @@
 #include "collision/collide_polytope.h"
 
 #include "collision/clip.h"
-#include "collision/feature_name.h"
 #include "collision/facet_search.h"
+#include "collision/feature_name.h"
 #include "collision/segment_contact.h"
 #include "math/rotation.h"
 
@@ -96,9 +96,15 @@ Manifold make_manifold(const PolytopePair& pair, const Facet& facet, double marg
   const Mat3 identity = Mat3::Identity();
   const Vec3 zero = Vec3::Zero();
   const Vec3 towards_a_B = pair.R_AB.transpose() * -facet.normal_A;
-  const std::uint32_t face_a =
-      facet.kind == Facet::Kind::face_a ? facet.a : face_towards(pair.a, facet.normal_A);
-  const std::uint32_t face_b = facet.kind == Facet::Kind::face_b ? facet.b : face_towards(pair.b, towards_a_B);
+  std::uint32_t face_a = facet.a, face_b = facet.b;
+  if (facet.kind == Facet::Kind::edges) {
+    face_a = flatter_face(pair.a, pair.a.edges[facet.a], facet.normal_A);
+    face_b = flatter_face(pair.b, pair.b.edges[facet.b], towards_a_B);
+  } else if (facet.kind == Facet::Kind::face_a) {
+    face_b = face_towards(pair.b, towards_a_B);
+  } else {
+    face_a = face_towards(pair.a, facet.normal_A);
+  }
   const bool flat_a = pair.a.faces[face_a].normal.dot(facet.normal_A) > kFlat;
   const bool flat_b = pair.b.faces[face_b].normal.dot(towards_a_B) > kFlat;
   if (facet.kind == Facet::Kind::edges && !(flat_a && flat_b)) return cross_edges(pair, facet, margin);

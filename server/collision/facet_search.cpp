@@ -16,8 +16,9 @@ constexpr double kParallel = 1e-24;
 /// Facets this little behind the best [parts of the smaller radius] are still evaluated, so that the lead is known and
 /// rounding can't prune a winner.
 constexpr double kLeadSought = 1e-3;
-/// Share of the radii below which two separations are equal: the rounding of one is a few 1e-16.
-constexpr double kTie = 1e-15;
+/// Share of the radii below which two separations are equal: their rounding, and what a nearly touching pair of arcs
+/// may lead by although its edges do not cross.
+constexpr double kTie = 1e-14;
 /// Faces of each body whose bounds are kept; those of larger hulls are computed again where needed.
 constexpr std::size_t kKeptFaces = 512;
 /// Edges of each side that are looked at together.
@@ -85,8 +86,13 @@ struct Side {
 class FacetSearch {
  public:
   FacetSearch(const PolytopePair& pair, PairCache& cache)
-      : a_{pair.a, {}, {}}, b_{pair.b, {}, {}}, R_(pair.R_AB), p_(pair.p_AB), cache_(cache),
-        lead_(kLeadSought * std::min(pair.a.radius, pair.b.radius)), tie_(tie_of(pair)) {}
+      : a_{pair.a, {}, {}},
+        b_{pair.b, {}, {}},
+        R_(pair.R_AB),
+        p_(pair.p_AB),
+        cache_(cache),
+        lead_(kLeadSought * std::min(pair.a.radius, pair.b.radius)),
+        tie_(tie_of(pair)) {}
 
   Facet face_a(std::uint32_t i, double enough = -kInfinity);
   Facet face_b(std::uint32_t i, double enough = -kInfinity);
@@ -113,8 +119,9 @@ class FacetSearch {
   const Vec3& p_;
   PairCache& cache_;
   const double lead_, tie_;
-  double floor_ = -kInfinity;   // a facet separates by this
-  Facet best_{Facet::Kind::none, 0, 0, -kInfinity};  // the best so far, the first of equals in the order faces of A, of B, edges
+  double floor_ = -kInfinity;  // a facet separates by this
+  Facet best_{Facet::Kind::none, 0, 0,
+              -kInfinity};      // the best so far, the first of equals in the order faces of A, of B, edges
   double second_ = -kInfinity;  // the best of the others that were evaluated
 };
 
@@ -168,7 +175,8 @@ EdgeArc FacetSearch::arc_of_a(std::uint32_t i) const {
   const Polytope& a = a_.polytope;
   const ConvexHull::Edge& edge = a.edges[i];
   const Vec3& tail = a.vertices[edge.tail];
-  return {tail, a.vertices[edge.head] - tail, a.faces[edge.left_face].normal, a.faces[edge.right_face].normal, i};
+  return {tail, a.vertices[edge.head] - tail, a.faces[edge.left_face].normal, a.faces[edge.right_face].normal,
+          i};
 }
 
 EdgeArc FacetSearch::arc_of_b(std::uint32_t i) const {
@@ -271,10 +279,12 @@ void FacetSearch::search_edges(double margin) {
 double FacetSearch::clearance(const Facet& facet) const {
   if (facet.kind == Facet::Kind::edges) {
     const EdgeArc a = arc_of_a(facet.a), b = arc_of_b(facet.b);
-    const SegmentPair pair = closest_points({a.tail + 0.5 * a.along, 0.5 * a.along}, {b.tail + 0.5 * b.along, 0.5 * b.along});
+    const SegmentPair pair =
+        closest_points({a.tail + 0.5 * a.along, 0.5 * a.along}, {b.tail + 0.5 * b.along, 0.5 * b.along});
     const double length_a = a.along.norm(), length_b = b.along.norm();
     const double sine = a.along.cross(b.along).norm() / (length_a * length_b);
-    return 0.5 * sine * std::min((1.0 - std::abs(pair.s_A)) * length_a, (1.0 - std::abs(pair.s_B)) * length_b);
+    return 0.5 * sine *
+           std::min((1.0 - std::abs(pair.s_A)) * length_a, (1.0 - std::abs(pair.s_B)) * length_b);
   }
   const bool of_a = facet.kind == Facet::Kind::face_a;
   const Polytope& polytope = of_a ? a_.polytope : b_.polytope;
@@ -300,7 +310,8 @@ FacetAnswer FacetSearch::search(double margin, const Facet& seed) {
   // The winner is at depth d under a facet of the Minkowski difference that holds a disc of radius c about the point
   // below which the origin lies. Then every direction further than atan(c / d) from its normal overlaps by hypot(c, d)
   // or has a facet of its own on the way down, and all nearer ones are beaten by the disc as long as c > 2 d.
-  if (best_.kind != Facet::Kind::edges) (best_.kind == Facet::Kind::face_a ? face_a(best_.a) : face_b(best_.b));
+  if (best_.kind != Facet::Kind::edges)
+    (best_.kind == Facet::Kind::face_a ? face_a(best_.a) : face_b(best_.b));
   const double c = clearance(best_), d = std::max(0.0, -best_.separation);
   if (c <= 2.0 * d) return {best_, 0.0};
   const double gap = best_.separation - std::max(second_, best_.separation - lead_);

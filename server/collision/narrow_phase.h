@@ -15,8 +15,9 @@ struct NarrowPhaseOptions {
   bool use_motion_bound = true;  ///< Off: every pair is queried again although it cannot have come near.
   bool use_cached_axis = true;   ///< Off: no early end on last step's separating axis.
   bool use_cached_facet =
-      true;             ///< Off: every contact of hulls is searched afresh instead of kept while it leads.
-  bool use_gjk = true;  ///< Off: straight to the exact features (same contacts, other cost), as boxes always go.
+      true;  ///< Off: every contact of hulls is searched afresh instead of kept while it leads.
+  bool use_gjk =
+      true;  ///< Off: straight to the exact features (same contacts, other cost), as boxes always go.
 };
 
 struct NarrowPhaseCounters {

@@ -135,6 +135,21 @@ std::uint32_t face_towards(const Polytope& polytope, const Vec3& d) {
   return best;
 }
 
+std::uint32_t flatter_face(const Polytope& polytope, const ConvexHull::Edge& edge, const Vec3& d) {
+  const auto along = [&](std::uint32_t face) { return polytope.faces[face].normal.dot(d); };
+  return along(edge.left_face) >= along(edge.right_face) ? edge.left_face : edge.right_face;
+}
+
+bool is_over_face(const Polytope& polytope, std::uint32_t face, const Vec3& p) {
+  const auto loop = polytope.loop(polytope.faces[face]);
+  for (std::size_t i = 0; i < loop.size(); ++i) {
+    const Vec3& tail = polytope.vertices[loop[i]];
+    const Vec3 along = polytope.vertices[loop[i + 1 == loop.size() ? 0 : i + 1]] - tail;
+    if (along.cross(p - tail).dot(polytope.faces[face].normal) < 0.0) return false;
+  }
+  return true;
+}
+
 PointDistance compute_distance(const Polytope& polytope, const Vec3& p, double enough) {
   double highest = -std::numeric_limits<double>::infinity();
   std::uint32_t nearest = 0;

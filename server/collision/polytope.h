@@ -54,6 +54,12 @@ double face_width(const Polytope& polytope, const ConvexHull::Face& face);
 /// another body coming from there meets. A function of d alone.
 std::uint32_t face_towards(const Polytope& polytope, const Vec3& d);
 
+/// Of the two faces of an edge, the one that looks along d more.
+std::uint32_t flatter_face(const Polytope& polytope, const ConvexHull::Edge& edge, const Vec3& d);
+
+/// Whether the foot of p on the face's plane lies in the face.
+bool is_over_face(const Polytope& polytope, std::uint32_t face, const Vec3& p);
+
 struct PointDistance {
   double distance;  ///< < 0 inside [m].
   Vec3 normal;      ///< Unit, out of the polytope towards the point.

@@ -84,14 +84,16 @@ void ClipPolygon::cut(const ClipSide& side, double tolerance) {
   count_ = static_cast<int>(n);
 }
 
-Manifold ClipPolygon::make_manifold(const FacePlane& plane, const Vec3& normal_A, double margin,
+Manifold ClipPolygon::make_manifold(const FacePlane& plane, const Vec3& normal_A, bool overlap, double margin,
                                     double merge) const {
   ManifoldBuilder builder(normal_A, margin, merge);
   for (std::size_t i = 0; i < static_cast<std::size_t>(count_); ++i) {
     const Vertex& vertex = loops_[static_cast<std::size_t>(current_)][i];
     if (vertex.p.z() <= margin) builder.add(plane.middle_A(vertex.p), vertex.p.z(), vertex.name);
   }
-  if (builder.count() == 0) builder.add(plane.middle_A(lowest_.p), lowest_.p.z(), lowest_.name);
+  if (builder.count() == 0 && overlap) {
+    builder.add(plane.middle_A(lowest_.p), lowest_.p.z(), lowest_.name);
+  }
   return builder.finish();
 }
 

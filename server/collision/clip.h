@@ -58,9 +58,10 @@ class ClipPolygon {
     return {vertex.p, vertex.name, vertex.marks};
   }
 
-  /// Everything up to the margin as manifold with normal_A (from A to B). If nothing lies over the reference face, the
-  /// lowest vertex of the uncut polygon speaks for it.
-  Manifold make_manifold(const FacePlane& plane, const Vec3& normal_A, double margin, double merge) const;
+  /// Everything up to the margin as manifold with normal_A (from A to B). If nothing lies over the reference face although
+  /// the bodies overlap, by rounding, the lowest vertex of the uncut polygon speaks for it.
+  Manifold make_manifold(const FacePlane& plane, const Vec3& normal_A, bool overlap, double margin,
+                         double merge) const;
 
  private:
   static constexpr int kCapacity = 2 * kMaxFaceVertices + 2;

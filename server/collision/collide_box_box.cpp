@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "collision/clip.h"
+#include "collision/corner_contact.h"
 #include "collision/feature_name.h"
 #include "collision/segment_contact.h"
 #include "math/rotation.h"
@@ -149,7 +150,8 @@ Manifold clip_faces(const BoxPair& pair, const Axis& axis, const BoxFace& face_a
 
   const double width =
       std::min({h[k1], h[k2], h_incident[(incident.k + 1) % 3], h_incident[(incident.k + 2) % 3]});
-  const ContactTolerance tolerance = ContactTolerance::of(width);
+  const ContactTolerance tolerance =
+      ContactTolerance::of(width, std::min(face_a.cosine, face_b.cosine) > ContactTolerance::kFaceToFace);
   // Sides in the order +u, +v, -u, -v, each from its lower to its upper corner as the loop runs for sign > 0.
   const std::uint32_t bit1 = 1u << k1, bit2 = 1u << k2,
                       base = static_cast<std::uint32_t>(reference.sign > 0.0) << k;
@@ -158,7 +160,7 @@ Manifold clip_faces(const BoxPair& pair, const Axis& axis, const BoxFace& face_a
                                           {-1, 0, h[k1], base | bit2, base},
                                           {0, -1, h[k2], base, base | bit1}}};
   for (const ClipSide& side : sides) polygon.cut(side, tolerance.inside);
-  return polygon.make_manifold(plane, axis.normal_A, margin, tolerance.merge);
+  return polygon.make_manifold(plane, axis.normal_A, axis.separation <= 0.0, margin, tolerance.merge);
 }
 
 /// The edge of a box along axis `i` that reaches furthest along n, with its two corners.
@@ -210,9 +212,8 @@ Manifold collide_box_box(const Box& a, const Box& b, const Pose& X_AB, double ma
   cache.axis_A = best.normal_A;
   cache.gap = best.separation;
   if (beyond) return {};
-  Manifold manifold = make_manifold(pair, best, margin);
-  if (best.separation <= 0.0) set_deepest(manifold, best.separation);
-  return manifold;
+  return contact_of_closest_points(make_manifold(pair, best, margin), best.separation, a, b, X_AB, margin,
+                                   cache);
 }
 
 }  // namespace tumble

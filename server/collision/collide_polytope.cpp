@@ -3,6 +3,7 @@
 #include "collision/collide_polytope.h"
 
 #include "collision/clip.h"
+#include "collision/corner_contact.h"
 #include "collision/facet_search.h"
 #include "collision/feature_name.h"
 #include "collision/segment_contact.h"
@@ -42,7 +43,8 @@ std::size_t lowest_along(const PlacedFace& placed, const Vec3& n_A) {
 }
 
 Manifold clip_faces(const PlacedFace& reference, const PlacedFace& incident, bool reference_is_a,
-                    const Vec3& normal_A, double margin) {
+                    const Facet& facet, double margin) {
+  const Vec3& normal_A = facet.normal_A;
   FacePlane plane;
   plane.f_A = reference.R * reference.face.normal;
   plane.n_A = reference_is_a ? normal_A : Vec3(-normal_A);
@@ -60,7 +62,10 @@ Manifold clip_faces(const PlacedFace& reference, const PlacedFace& incident, boo
 
   const double width =
       std::min(face_width(reference.body, reference.face), face_width(incident.body, incident.face));
-  const ContactTolerance tolerance = ContactTolerance::of(width);
+  const Vec3 incident_normal_A = incident.R * incident.face.normal;
+  const bool face_to_face =
+      std::min(plane.n_A.dot(plane.f_A), -plane.n_A.dot(incident_normal_A)) > ContactTolerance::kFaceToFace;
+  const ContactTolerance tolerance = ContactTolerance::of(width, face_to_face);
   const auto corner = [&](int k) -> Vec3 {
     const Vec3 d = reference.vertex_A(k, 0) - plane.origin_A;
     return {plane.u_A.dot(d), plane.v_A.dot(d), 0.0};
@@ -77,7 +82,7 @@ Manifold clip_faces(const PlacedFace& reference, const PlacedFace& incident, boo
     }
     tail = head;
   }
-  return polygon.make_manifold(plane, normal_A, margin, tolerance.merge);
+  return polygon.make_manifold(plane, normal_A, facet.separation <= 0.0, margin, tolerance.merge);
 }
 
 Manifold cross_edges(const PolytopePair& pair, const Facet& facet, double margin) {
@@ -111,28 +116,28 @@ Manifold make_manifold(const PolytopePair& pair, const Facet& facet, double marg
   const PlacedFace a{pair.a, pair.a.faces[face_a], identity, zero};
   const PlacedFace b{pair.b, pair.b.faces[face_b], pair.R_AB, pair.p_AB};
   const bool reference_is_a = facet.kind == Facet::Kind::face_a || flat_a;
-  return reference_is_a ? clip_faces(a, b, true, facet.normal_A, margin)
-                        : clip_faces(b, a, false, facet.normal_A, margin);
+  return reference_is_a ? clip_faces(a, b, true, facet, margin) : clip_faces(b, a, false, facet, margin);
 }
 
 /// The facet of the last search if its lead (kept by the pipeline) still holds, else a new search.
 FacetAnswer choose_facet(const PolytopePair& pair, double margin, PairCache& cache) {
-  if (cache.slack > 0.0) {
+  if (cache.slack >= 0.0) {
     const Facet facet = recall_facet(pair, cache);
     if (facet.kind != Facet::Kind::none && facet.separation < margin) return {facet, cache.slack};
   }
   return find_facet(pair, margin, cache);
 }
 
-Manifold collide(const PolytopePair& pair, double margin, PairCache& cache) {
+Manifold collide(const PolytopePair& pair, const Shape& a, const Shape& b, const Pose& X_AB, double margin,
+                 PairCache& cache) {
   const FacetAnswer answer = choose_facet(pair, margin, cache);
+  const double separation = answer.facet.separation;
   cache.axis_A = answer.facet.normal_A;
-  cache.gap = answer.facet.separation;
+  cache.gap = separation;
   cache.slack = answer.lead;
-  if (answer.facet.separation > margin) return {};
-  Manifold manifold = make_manifold(pair, answer.facet, margin);
-  if (answer.facet.separation <= 0.0) set_deepest(manifold, answer.facet.separation);
-  return manifold;
+  if (separation > margin) return {};
+  return contact_of_closest_points(make_manifold(pair, answer.facet, margin), separation, a, b, X_AB, margin,
+                                   cache);
 }
 
 }  // namespace
@@ -140,12 +145,12 @@ Manifold collide(const PolytopePair& pair, double margin, PairCache& cache) {
 Manifold collide_box_hull(const Box& a, const HullPointer& b, const Pose& X_AB, double margin,
                           PairCache& cache) {
   const BoxFeatures box(a);
-  return collide({box.view(), view_of(*b), rotation_matrix(X_AB.q), X_AB.p}, margin, cache);
+  return collide({box.view(), view_of(*b), rotation_matrix(X_AB.q), X_AB.p}, a, b, X_AB, margin, cache);
 }
 
 Manifold collide_hull_hull(const HullPointer& a, const HullPointer& b, const Pose& X_AB, double margin,
                            PairCache& cache) {
-  return collide({view_of(*a), view_of(*b), rotation_matrix(X_AB.q), X_AB.p}, margin, cache);
+  return collide({view_of(*a), view_of(*b), rotation_matrix(X_AB.q), X_AB.p}, a, b, X_AB, margin, cache);
 }
 
 }  // namespace tumble

@@ -23,6 +23,8 @@ constexpr double kTie = 1e-14;
 constexpr std::size_t kKeptFaces = 512;
 /// Edges of each side that are looked at together.
 constexpr std::size_t kBlock = 128;
+/// From so many pairs of edges on it pays to look for a better point against each edge.
+constexpr std::size_t kManyPairs = 256;
 /// Larger indices are not remembered in the 32-bit feature: such hulls are searched without a seed.
 constexpr std::uint32_t kIndexBits = 15, kIndexLimit = 1u << kIndexBits;
 
@@ -108,7 +110,9 @@ class FacetSearch {
   void search_faces();
   void search_edges(double margin);
   void cross(const EdgeArc& a, const EdgeArc& b);
-  bool overlaps_more(const EdgeArc& a_or_b, bool of_a, double depth);
+  bool overlaps_more(const EdgeArc& arc, bool of_a, double depth);
+  std::size_t gather(bool of_a, std::uint32_t& next, Block& block) const;
+  std::size_t thin_out(bool of_a, Block& block, std::size_t count);
   double clearance(const Facet& facet) const;
 
   void offer(const Facet& facet);
@@ -247,24 +251,38 @@ void FacetSearch::cross(const EdgeArc& a, const EdgeArc& b) {
   if (facet.kind != Facet::Kind::none) offer(facet);
 }
 
+/// Of B's or A's edges from `next` on, those that may win, until the block is full.
+std::size_t FacetSearch::gather(bool of_a, std::uint32_t& next, Block& block) const {
+  const Side& side = of_a ? a_ : b_;
+  const double depth = std::max(0.0, -needed());
+  std::size_t count = 0;
+  for (; next < side.polytope.edges.size() && count < kBlock; ++next) {
+    if (side.may_win(side.polytope.edges[next], depth))
+      block[count++] = of_a ? arc_of_a(next) : arc_of_b(next);
+  }
+  return count;
+}
+
+std::size_t FacetSearch::thin_out(bool of_a, Block& block, std::size_t count) {
+  const double depth = std::max(0.0, -needed());
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!overlaps_more(block[i], of_a, depth)) block[kept++] = block[i];
+  }
+  return kept;
+}
+
 void FacetSearch::search_edges(double margin) {
   Block block_a, block_b;
-  const auto depth = [&] { return std::max(0.0, -needed()); };
-  const auto& edges_a = a_.polytope.edges;
-  const auto& edges_b = b_.polytope.edges;
-  for (std::uint32_t next_a = 0; next_a < edges_a.size();) {
-    std::size_t count_a = 0;
-    for (; next_a < edges_a.size() && count_a < kBlock; ++next_a) {
-      if (!a_.may_win(edges_a[next_a], depth())) continue;
-      block_a[count_a] = arc_of_a(next_a);
-      count_a += !overlaps_more(block_a[count_a], true, depth());
-    }
-    for (std::uint32_t next_b = 0; count_a > 0 && next_b < edges_b.size();) {
-      std::size_t count_b = 0;
-      for (; next_b < edges_b.size() && count_b < kBlock; ++next_b) {
-        if (!b_.may_win(edges_b[next_b], depth())) continue;
-        block_b[count_b] = arc_of_b(next_b);
-        count_b += !overlaps_more(block_b[count_b], false, depth());
+  for (std::uint32_t next_a = 0; next_a < a_.polytope.edges.size();) {
+    std::size_t count_a = gather(true, next_a, block_a);
+    bool thinned = false;
+    for (std::uint32_t next_b = 0; count_a > 0 && next_b < b_.polytope.edges.size();) {
+      std::size_t count_b = gather(false, next_b, block_b);
+      if (count_a * count_b > kManyPairs) {
+        if (!thinned) count_a = thin_out(true, block_a, count_a);
+        thinned = true;
+        count_b = thin_out(false, block_b, count_b);
       }
       for (std::size_t i = 0; i < count_a; ++i) {
         for (std::size_t j = 0; j < count_b; ++j) cross(block_a[i], block_b[j]);
@@ -304,9 +322,9 @@ double FacetSearch::clearance(const Facet& facet) const {
 FacetAnswer FacetSearch::search(double margin, const Facet& seed) {
   choose_points(seed);
   search_faces();
-  if (best_.separation > margin) return {best_, 0.0};
+  if (best_.separation > margin) return {best_, -1.0};
   search_edges(margin);
-  if (best_.separation > margin) return {best_, 0.0};
+  if (best_.separation > margin) return {best_, -1.0};
   // The winner is at depth d under a facet of the Minkowski difference that holds a disc of radius c about the point
   // below which the origin lies. Then every direction further than atan(c / d) from its normal overlaps by hypot(c, d)
   // or has a facet of its own on the way down, and all nearer ones are beaten by the disc as long as c > 2 d.
@@ -334,7 +352,7 @@ Facet recall_facet(const PolytopePair& pair, PairCache& cache) {
 
 FacetAnswer find_facet(const PolytopePair& pair, double margin, PairCache& cache) {
   const Facet seed = recall_facet(pair, cache);
-  if (seed.kind != Facet::Kind::none && seed.separation > margin) return {seed, 0.0};
+  if (seed.kind != Facet::Kind::none && seed.separation > margin) return {seed, -1.0};
   FacetSearch search(pair, cache);
   const FacetAnswer answer = search.search(margin, seed);
   cache.feature = encode(answer.facet);

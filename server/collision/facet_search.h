@@ -23,8 +23,9 @@ struct Facet {
 
 struct FacetAnswer {
   Facet facet;
-  /// As long as no point of B moves by a quarter of this in A's frame, the same facet wins [m]; <= 0: unknown.
-  double lead = 0.0;
+  /// As long as no point of B moves by more than a quarter of this in A's frame, the same facet wins [m]; < 0: it may
+  /// not even win now, since one beyond the margin was enough.
+  double lead = -1.0;
 };
 
 /// The facet that separates most (or, if one is beyond the margin, some such one). A function of the pose alone: facet,

@@ -26,4 +26,9 @@ inline std::uint32_t name_crossing(std::uint32_t a1, std::uint32_t a2, std::uint
   return mix_features(edge(a1, a2), edge(b1, b2), 3);
 }
 
+/// Corners or edges that look at each other across a gap, whichever they are.
+inline std::uint32_t name_corners() {
+  return mix_features(0, 0, 4);
+}
+
 }  // namespace tumble

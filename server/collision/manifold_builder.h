@@ -12,11 +12,14 @@ struct ContactTolerance {
   double inside;  ///< A vertex this far outside a face still counts as inside and is not moved.
   double merge;   ///< Points closer than this are one.
 
-  /// 0.1 mm and 1 mm (coincident edges otherwise let points jump along the edge: a warm start's residual was 1e-3
-  /// instead of 1e-8), but never more than these fractions of the narrower face, `width` [m] across.
-  static ContactTolerance of(double width) {
-    return {std::min(1e-4, 1e-3 * width), std::min(1e-3, 1e-2 * width)};
+  /// On bodies that lie face to face 0.1 mm and 1 mm (coincident edges otherwise let points jump along the edge: a warm
+  /// start's residual was 1e-3 instead of 1e-8), but never more than these fractions of the narrower face, `width` [m]
+  /// across. Faces that meet at an angle have no edges to confuse: there a vertex outside is outside.
+  static ContactTolerance of(double width, bool face_to_face = true) {
+    return {face_to_face ? std::min(1e-4, 1e-3 * width) : 0.0, std::min(1e-3, 1e-2 * width)};
   }
+  /// Cosine of the angle between the contact normal and both faces of bodies that lie face to face: 0.01 rad.
+  static constexpr double kFaceToFace = 1.0 - 5e-5;
 };
 
 class ManifoldBuilder {

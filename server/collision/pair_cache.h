@@ -15,7 +15,7 @@ struct PairCache {
 
   Vec3 axis_A = Vec3::Zero();  ///< Last separating axis, from A to B, unit; zero: none yet.
   double gap = 0.0;            ///< Certified lower bound of the distance at the pose below [m]; <= 0: none.
-  double slack = 0.0;        ///< Lead of the winning facet over all others at the pose below [m]; <= 0: none.
+  double slack = -1.0;       ///< The kept facet wins until B has moved this far [m]; 0: only here; < 0: none.
   Vec3 p_AB = Vec3::Zero();  ///< Relative pose that gap and slack belong to.
   Quat q_AB = Quat::Identity();
   std::uint32_t feature = 0;                 ///< Facet that won the last exact search; 0: none.

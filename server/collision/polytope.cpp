@@ -159,7 +159,7 @@ PointDistance compute_distance(const Polytope& polytope, const Vec3& p, double e
   }
   const Vec3& normal = polytope.faces[nearest].normal;
   PointDistance best{highest, normal, p - highest * normal, mix_features(0, nearest)};
-  if (highest <= 0.0 || highest > enough) return best;
+  if (highest <= 0.0 || highest > enough || is_over_face(polytope, nearest, p)) return best;
   best.distance = std::numeric_limits<double>::infinity();
   for (std::uint32_t i = 0; i < polytope.faces.size(); ++i) {
     const double height = polytope.faces[i].normal.dot(p) - polytope.faces[i].offset;

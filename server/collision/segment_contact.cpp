@@ -9,18 +9,24 @@ namespace {
 
 /// sin^2 of the angle below which two segments run side by side: the ends of a 1 m long pair are then within 0.5 mm.
 constexpr double kSideBySide = 1e-6;
+/// Square of the overlap, in parts of the lengths, that may be rounding.
+constexpr double kTouching2 = 1e-26;
 
 }  // namespace
 
 Manifold make_segment_manifold(const RoundedSegment& a, const RoundedSegment& b, const Vec3& normal_A,
                                double margin, double merge, std::uint32_t feature) {
   ManifoldBuilder builder(normal_A, margin, merge);
+  const double aa = a.core.reach.squaredNorm(), bb = b.core.reach.squaredNorm();
   const auto add = [&](const Vec3& p_a, const Vec3& p_b, std::uint32_t index) {
-    const double separation = normal_A.dot(p_b - p_a) - a.radius - b.radius;
+    // Apart or touching, two places are as far from each other as they are, whatever the normal thinks of it.
+    const double along = normal_A.dot(p_b - p_a);
+    const bool apart = along > 0.0 || along * along < kTouching2 * (aa + bb);
+    const double gap = apart ? (p_b - p_a).norm() : along;
+    const double separation = gap - a.radius - b.radius;
     const Vec3 middle = 0.5 * (p_a + p_b) + (0.5 * (a.radius - b.radius)) * normal_A;
     builder.add(middle, separation, index == 0 ? feature : mix_features(feature, index));
   };
-  const double aa = a.core.reach.squaredNorm(), bb = b.core.reach.squaredNorm();
   if (a.core.reach.cross(b.core.reach).squaredNorm() >= kSideBySide * aa * bb) {
     const SegmentPair closest = closest_points(a.core, b.core);
     add(closest.p_A, closest.p_B, 0);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,10 @@ struct ContactClass {
   int queries;  ///< Of the full table.
   std::function<PlacedPair(RandomPose&)> make;
 };
+
+inline void PrintTo(const ContactClass& c, std::ostream* out) {
+  *out << c.pairs << ", " << c.name;
+}
 
 struct ContactFigures {
   int queries = 0, contacts = 0;

@@ -217,6 +217,25 @@ Shape any_shape(RandomPose& random, int kind) {
   }
 }
 
+/// A gap of 1e-6 to 2e-2 along some direction, and a margin that sees it.
+PlacedPair near_miss(RandomPose& random, const Shape& a, const Shape& b) {
+  const Vec3 n = random.direction();
+  const Quat q = random.rotation();
+  const double gap = random.log_uniform(1e-6, 2e-2);
+  PlacedPair pair = push_together(random, a, b, q, n, -gap);
+  pair.margin = 0.05;
+  return pair;
+}
+
+template <typename MakeA, typename MakeB>
+void add_near_miss(std::vector<ContactClass>& classes, const std::string& pairs, int queries, MakeA make_a,
+                   MakeB make_b) {
+  classes.push_back({pairs, "apart, within the margin", queries, [=](RandomPose& r) {
+                       const Shape a = make_a(r), b = make_b(r);
+                       return near_miss(r, a, b);
+                     }});
+}
+
 template <typename MakeA, typename MakeB>
 void add_shallow_and_deep(std::vector<ContactClass>& classes, const std::string& pairs, int queries,
                           MakeA make_a, MakeB make_b) {
@@ -252,6 +271,10 @@ void add_hulls(std::vector<ContactClass>& classes) {
   const auto rock200 = [](RandomPose& r) -> Shape { return rocks200().any(r); };
   const auto designed = [](RandomPose& r) -> Shape { return parts().any(r); };
   const auto box = [](RandomPose& r) -> Shape { return random_box(r); };
+  add_near_miss(classes, "box-box", 1000000, box, box);
+  add_near_miss(classes, "hull-hull, 32 vertices", 1000000, rock32, rock32);
+  add_near_miss(classes, "hull-hull, parts", 1000000, designed, designed);
+  add_near_miss(classes, "box-hull, 32 vertices", 1000000, box, rock32);
   add_shallow_and_deep(classes, "hull-hull, 32 vertices", 1000000, rock32, rock32);
   add_shallow_and_deep(classes, "hull-hull, 200 vertices", 200000, rock200, rock200);
   add_shallow_and_deep(classes, "hull-hull, parts", 1000000, designed, designed);

@@ -3,27 +3,10 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-#include <new>
 #include <random>
 #include <set>
 
-namespace {
-std::uint64_t allocations = 0;
-}
-
-// Not inlined: g++ 12 takes an inlined free() for a mismatch with new.
-[[gnu::noinline]] void* operator new(std::size_t size) {
-  ++allocations;
-  if (void* memory = std::malloc(size)) return memory;
-  throw std::bad_alloc();
-}
-[[gnu::noinline]] void operator delete(void* memory) noexcept {
-  std::free(memory);
-}
-[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept {
-  std::free(memory);
-}
+#include "allocation_counter.h"
 
 namespace tumble {
 namespace {
@@ -247,9 +230,9 @@ TEST(BroadPhase, NoAllocationAfterWarmUp) {
   };
   pairs.reserve(10000);
   for (int i = 0; i < 200; ++i) step();
-  const std::uint64_t before = allocations;
+  const std::uint64_t before = test::allocation_count();
   for (int i = 0; i < 200; ++i) step();
-  EXPECT_EQ(allocations, before);
+  EXPECT_EQ(test::allocation_count(), before);
 }
 
 }  // namespace

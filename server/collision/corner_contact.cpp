@@ -1,0 +1,47 @@
+// See corner_contact.h. The closest points come from distance.h, between two bounds that meet at round-off.
+#include "collision/corner_contact.h"
+
+#include <limits>
+
+#include "collision/distance.h"
+#include "collision/feature_name.h"
+#include "collision/manifold_builder.h"
+
+namespace tumble {
+namespace {
+
+/// Share of the radii to which the axis and the points made along it know their separation.
+constexpr double kRounding = 1e-14;
+
+double lowest(const Manifold& manifold) {
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < static_cast<std::size_t>(manifold.count); ++i) {
+    least = std::min(least, manifold.points[i].separation);
+  }
+  return least;
+}
+
+}  // namespace
+
+Manifold contact_of_closest_points(Manifold manifold, double separation, const Shape& a, const Shape& b,
+                                   const Pose& X_AB, double margin, PairCache& cache) {
+  const double rounding = kRounding * (bounding_radius(a) + bounding_radius(b));
+  if (separation < -rounding || lowest(manifold) <= separation + rounding) {
+    set_deepest(manifold, separation);
+    return manifold;
+  }
+  const Distance distance = compute_distance(a, b, X_AB);
+  const Vec3 middle_A = 0.5 * (distance.a_A + distance.b_A);
+  if (distance.overlap || distance.upper <= separation + rounding) {
+    if (manifold.count == 0)
+      return single_point(manifold.normal_A, middle_A, separation, margin, name_corners());
+    set_deepest(manifold, separation);
+    return manifold;
+  }
+  cache.axis_A = distance.axis_A;
+  cache.gap = distance.lower;
+  cache.slack = -1.0;
+  return single_point(distance.axis_A, middle_A, distance.upper, margin, name_corners());
+}
+
+}  // namespace tumble

@@ -1,0 +1,18 @@
+// Two polytopes that are apart, but nearer than the margin, with no face or pair of edges between their closest points:
+// corners that look at each other. The best face's separation is then less than the distance, and its normal not the way
+// from one to the other.
+#pragma once
+
+#include "collision/manifold.h"
+#include "collision/pair_cache.h"
+#include "collision/shape.h"
+
+namespace tumble {
+
+/// `manifold` was made along an axis that separates by `separation` [m]. Overlapping, or if its lowest point is that near,
+/// it is returned with this separation at its lowest point; else the contact of the closest points, or none if these are
+/// beyond the margin. Updates the cache's axis.
+Manifold contact_of_closest_points(Manifold manifold, double separation, const Shape& a, const Shape& b,
+                                   const Pose& X_AB, double margin, PairCache& cache);
+
+}  // namespace tumble

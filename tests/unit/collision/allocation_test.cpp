@@ -1,0 +1,54 @@
+// No query of the narrow phase takes memory from the heap, cold or warm.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <new>
+
+#include "allocation_counter.h"
+#include "collision/narrow_phase.h"
+#include "sample_hulls.h"
+
+namespace {
+std::uint64_t allocations = 0;
+}
+
+// Not inlined: g++ 12 takes an inlined free() for a mismatch with new.
+[[gnu::noinline]] void* operator new(std::size_t size) {
+  ++allocations;
+  if (void* memory = std::malloc(size)) return memory;
+  throw std::bad_alloc();
+}
+[[gnu::noinline]] void operator delete(void* memory) noexcept {
+  std::free(memory);
+}
+[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept {
+  std::free(memory);
+}
+
+namespace tumble::test {
+
+std::uint64_t allocation_count() {
+  return allocations;
+}
+
+namespace {
+
+TEST(Allocation, NoQueryAllocates) {
+  RandomPose random(61);
+  const std::vector<Shape> shapes = {HalfSpace{}, Sphere{0.4}, Capsule{0.3, 0.6}, Box{Vec3(0.5, 0.3, 0.7)},
+                                     random_hull(random, 16, Vec3(0.6, 0.5, 0.7))};
+  NarrowPhaseCounters counters;
+  const std::uint64_t before = allocation_count();
+  for (int i = 0; i < 5000; ++i) {
+    const Shape& a = shapes[static_cast<std::size_t>(i % 5)];
+    const Shape& b = shapes[static_cast<std::size_t>(i / 5 % 5)];
+    const Pose X_WA = random.pose(0.7), X_WB = random.pose(0.7);
+    PairCache cache;
+    for (int again = 0; again < 2; ++again) collide(a, X_WA, b, X_WB, 0.05, {}, cache, counters);
+  }
+  EXPECT_EQ(allocation_count(), before);
+  EXPECT_GT(counters.exact, 1000u);
+}
+
+}  // namespace
+}  // namespace tumble::test

@@ -1,8 +1,13 @@
-// What one query of the narrow phase costs, beside plain libccd's penetration queries on the same pairs. 512 poses a
-// class; "cold" forgets the pair before each query, "warm" keeps each pair's memory while nothing moves.
+// What one query of the narrow phase costs, beside plain libccd's penetration queries and, for boxes, Bullet's and ODE's
+// box-box functions on the same pairs, all in double precision. 512 poses a class; "cold" forgets the pair before each
+// query, "warm" keeps each pair's memory while nothing moves, "coherent" while B moves a little with every query.
+#include <BulletCollision/CollisionDispatch/btBoxBoxDetector.h>
+#include <BulletCollision/CollisionShapes/btBoxShape.h>
 #include <benchmark/benchmark.h>
 #include <ccd/ccd.h>
+#include <ode/ode.h>
 
+#include <array>
 #include <random>
 #include <string>
 #include <vector>
@@ -98,6 +103,23 @@ Pair hull_deep(Source& source) {
   return hull_pair(source, 0.1);
 }
 
+/// A vertex of B lies in the middle of a face of A, 0.1 mm deep.
+Pair hull_rest(Source& source) {
+  static const HullPointer hull = hull32(source);
+  const ConvexHull::Face& face = hull->faces[static_cast<std::size_t>(source.uniform(0.0, 20.0))];
+  Vec3 middle = Vec3::Zero();
+  for (std::uint32_t k = 0; k < face.count; ++k)
+    middle += hull->vertices[hull->loops[face.first + k]] / face.count;
+  const Quat q = source.rotation();
+  const Vec3 p = middle - q * support(hull, q.conjugate() * -face.normal) - 1e-4 * face.normal;
+  const Pose X_WA{source.rotation(), source.vector(-10.0, 10.0)};
+  return {hull, hull, X_WA, X_WA * Pose{q, p}};
+}
+/// About as often apart as not.
+Pair hull_pass(Source& source) {
+  return hull_pair(source, source.uniform(-0.05, 0.02));
+}
+
 using Make = Pair (*)(Source&);
 
 std::vector<Pair> make_pairs(Make make) {
@@ -121,6 +143,109 @@ void tumble_contacts(benchmark::State& state, Make make, bool keep_memory) {
     points += static_cast<std::uint64_t>(m.count);
     benchmark::DoNotOptimize(m.normal_A);
     i = (i + 1) % pairs.size();
+  }
+  state.counters["points"] = static_cast<double>(points) / static_cast<double>(state.iterations());
+}
+
+/// B wanders: each query has moved it by about `pace` [m] and [rad], to and fro along one direction for 64 queries each.
+void tumble_coherent(benchmark::State& state, Make make, double pace) {
+  constexpr std::size_t kSteps = 64;
+  const std::vector<Pair> pairs = make_pairs(make);
+  std::vector<std::vector<Pose>> paths;
+  Source source;
+  for (const Pair& pair : pairs) {
+    const Vec3 shift = source.vector(-pace, pace);
+    const Quat turn = exp_map(source.vector(-pace, pace));
+    std::vector<Pose> path = {pair.X_WB};
+    while (path.size() < kSteps) path.push_back({normalized(turn * path.back().q), path.back().p + shift});
+    for (std::size_t i = kSteps; i-- > 0;) path.push_back(path[i]);
+    paths.push_back(path);
+  }
+  std::vector<PairCache> caches(pairs.size());
+  NarrowPhaseCounters counters;
+  std::size_t i = 0, step = 0;
+  for (auto _ : state) {
+    const Pair& pair = pairs[i];
+    const Manifold m = collide(pair.a, pair.X_WA, pair.b, paths[i][step], 0.0, {}, caches[i], counters);
+    benchmark::DoNotOptimize(m.normal_A);
+    if (++i == pairs.size()) i = 0, step = (step + 1) % (2 * kSteps);
+  }
+  const double queries = static_cast<double>(counters.queries);
+  state.counters["by_motion"] = static_cast<double>(counters.motion_bound) / queries;
+  state.counters["by_axis"] = static_cast<double>(counters.cached_axis) / queries;
+  state.counters["by_gjk"] = static_cast<double>(counters.gjk) / queries;
+  state.counters["exact"] = static_cast<double>(counters.exact) / queries;
+  state.counters["facet_kept"] = static_cast<double>(counters.facet_kept) / queries;
+}
+
+struct BulletPoints : btDiscreteCollisionDetectorInterface::Result {
+  void setShapeIdentifiersA(int, int) override {}
+  void setShapeIdentifiersB(int, int) override {}
+  void addContactPoint(const btVector3&, const btVector3&, btScalar) override { ++count; }
+  std::uint64_t count = 0;
+};
+
+btTransform to_bullet(const Pose& X) {
+  return {btQuaternion(X.q.x(), X.q.y(), X.q.z(), X.q.w()), btVector3(X.p.x(), X.p.y(), X.p.z())};
+}
+
+void bullet_boxes(benchmark::State& state, Make make) {
+  const std::vector<Pair> pairs = make_pairs(make);
+  std::vector<btBoxShape> a, b;
+  std::vector<btDiscreteCollisionDetectorInterface::ClosestPointInput> inputs;
+  for (const Pair& pair : pairs) {
+    const Vec3 &ha = std::get_if<Box>(&pair.a)->half_extents, &hb = std::get_if<Box>(&pair.b)->half_extents;
+    a.emplace_back(btVector3(ha.x(), ha.y(), ha.z()));
+    b.emplace_back(btVector3(hb.x(), hb.y(), hb.z()));
+    inputs.emplace_back();
+    inputs.back().m_transformA = to_bullet(pair.X_WA);
+    inputs.back().m_transformB = to_bullet(pair.X_WB);
+  }
+  BulletPoints points;
+  std::size_t i = 0;
+  for (auto _ : state) {
+    btBoxBoxDetector detector(&a[i], &b[i]);
+    detector.getClosestPoints(inputs[i], points, nullptr);
+    benchmark::DoNotOptimize(points.count);
+    i = (i + 1) % pairs.size();
+  }
+  state.counters["points"] = static_cast<double>(points.count) / static_cast<double>(state.iterations());
+}
+
+struct OdeBox {
+  dVector3 position, side;
+  dMatrix3 rotation;
+};
+
+OdeBox to_ode(const Shape& shape, const Pose& X) {
+  OdeBox box{};
+  const Mat3 R = rotation_matrix(X.q);
+  for (int i = 0; i < 3; ++i) {
+    box.position[i] = X.p[i];
+    box.side[i] = 2.0 * std::get_if<Box>(&shape)->half_extents[i];
+    for (int j = 0; j < 3; ++j) box.rotation[4 * i + j] = R(i, j);
+  }
+  return box;
+}
+
+void ode_boxes(benchmark::State& state, Make make) {
+  std::vector<OdeBox> a, b;
+  for (const Pair& pair : make_pairs(make)) {
+    a.push_back(to_ode(pair.a, pair.X_WA));
+    b.push_back(to_ode(pair.b, pair.X_WB));
+  }
+  std::array<dContactGeom, 8> contacts;
+  std::size_t i = 0;
+  std::uint64_t points = 0;
+  for (auto _ : state) {
+    dVector3 normal;
+    dReal depth = 0;
+    int axis = 0;
+    points += static_cast<std::uint64_t>(dBoxBox(a[i].position, a[i].rotation, a[i].side, b[i].position,
+                                                 b[i].rotation, b[i].side, normal, &depth, &axis, 8,
+                                                 contacts.data(), sizeof(dContactGeom)));
+    benchmark::DoNotOptimize(contacts);
+    i = (i + 1) % a.size();
   }
   state.counters["points"] = static_cast<double>(points) / static_cast<double>(state.iterations());
 }
@@ -164,22 +289,28 @@ void plain_libccd(benchmark::State& state, Make make, bool mpr) {
   }
 }
 
-void add_class(const std::string& name, Make make) {
+void add_class(const std::string& name, Make make, bool boxes = false) {
   benchmark::RegisterBenchmark((name + "/tumble_cold").c_str(), tumble_contacts, make, false);
   benchmark::RegisterBenchmark((name + "/tumble_warm").c_str(), tumble_contacts, make, true);
   benchmark::RegisterBenchmark((name + "/ccdGJKPenetration").c_str(), plain_libccd, make, false);
   benchmark::RegisterBenchmark((name + "/ccdMPRPenetration").c_str(), plain_libccd, make, true);
+  if (!boxes) return;
+  benchmark::RegisterBenchmark((name + "/bullet").c_str(), bullet_boxes, make);
+  benchmark::RegisterBenchmark((name + "/ode").c_str(), ode_boxes, make);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  add_class("box_face", box_face);
-  add_class("box_edge", box_edge);
-  add_class("box_deep", box_deep);
+  add_class("box_face", box_face, true);
+  add_class("box_edge", box_edge, true);
+  add_class("box_deep", box_deep, true);
   add_class("sphere_sphere", sphere_sphere);
   add_class("hull32_shallow", hull_shallow);
   add_class("hull32_deep", hull_deep);
+  benchmark::RegisterBenchmark("box_resting/tumble_coherent", tumble_coherent, box_face, 1e-6);
+  benchmark::RegisterBenchmark("hull32_resting/tumble_coherent", tumble_coherent, hull_rest, 1e-7);
+  benchmark::RegisterBenchmark("hull32_moving/tumble_coherent", tumble_coherent, hull_pass, 2e-3);
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
   benchmark::RunSpecifiedBenchmarks();

@@ -2,6 +2,9 @@
 """Runs the benchmark programs of a build and writes what they say to README.md, with the machine and the versions.
 
     run_benchmarks.py BUILD [NAME...]     all programs bench_*, or those named (`step` or `bench_step`)
+
+Beside bench_NAME a program NAME_accuracy may print a Markdown table of its own; its first argument is the share of its
+full size to run, TUMBLE_SHARE or 0.001.
 """
 import json
 import os
@@ -36,6 +39,13 @@ def table(report):
     return "\n".join(lines)
 
 
+def own_table(program):
+    """What a program that prints Markdown says."""
+    print(f"running {program.name}", file=sys.stderr)
+    share = os.environ.get("TUMBLE_SHARE", "0.001")
+    return subprocess.run([program, share], check=True, stdout=subprocess.PIPE, text=True).stdout
+
+
 def first_line(*command):
     return subprocess.run(command, check=True, capture_output=True, text=True).stdout.splitlines()[0]
 
@@ -61,7 +71,12 @@ def main():
                 and (not wanted or path.name.removeprefix("bench_") in wanted)]
     if not programs or wanted - {path.name.removeprefix("bench_") for path in programs}:
         sys.exit(f"no such benchmark: {' '.join(sorted(wanted)) or 'none is built'}")
-    sections = [f"## {path.name}\n{table(run_program(path))}" for path in programs]
+    sections = []
+    for path in programs:
+        sections.append(f"## {path.name}\n{table(run_program(path))}")
+        accuracy = path.with_name(path.name.removeprefix("bench_") + "_accuracy")
+        if accuracy.is_file():
+            sections.append(f"## {accuracy.name}\n{own_table(accuracy)}")
     text = "\n".join(["# Benchmarks", "Written by `./run bench`; a counter's unit is part of its name.", "",
                       *machine(build), "", *sections, ""])
     print(text)

@@ -201,7 +201,7 @@ class CoreTruth {
 
   struct Pair {
     Real distance = std::numeric_limits<Real>::infinity();
-    Vec3L p_a, p_b;
+    Vec3L p_a = Vec3L::Zero(), p_b = Vec3L::Zero();
     void offer(const Vec3L& a, const Vec3L& b) {
       const Real d = (b - a).norm();
       if (d < distance) distance = d, p_a = a, p_b = b;

@@ -186,7 +186,7 @@ struct BulletPoints : btDiscreteCollisionDetectorInterface::Result {
 };
 
 btTransform to_bullet(const Pose& X) {
-  return {btQuaternion(X.q.x(), X.q.y(), X.q.z(), X.q.w()), btVector3(X.p.x(), X.p.y(), X.p.z())};
+  return btTransform(btQuaternion(X.q.x(), X.q.y(), X.q.z(), X.q.w()), btVector3(X.p.x(), X.p.y(), X.p.z()));
 }
 
 void bullet_boxes(benchmark::State& state, Make make) {

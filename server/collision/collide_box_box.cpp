@@ -123,6 +123,10 @@ struct BoxFace {
   }
 };
 
+bool lie_face_to_face(const BoxFace& face_a, const BoxFace& face_b) {
+  return std::min(face_a.cosine, face_b.cosine) > ContactTolerance::kFaceToFace;
+}
+
 /// Clips B's face against A's or the other way round, whichever `reference_is_a` says.
 Manifold clip_faces(const BoxPair& pair, const Axis& axis, const BoxFace& face_a, const BoxFace& face_b,
                     bool reference_is_a, double margin) {
@@ -150,8 +154,7 @@ Manifold clip_faces(const BoxPair& pair, const Axis& axis, const BoxFace& face_a
 
   const double width =
       std::min({h[k1], h[k2], h_incident[(incident.k + 1) % 3], h_incident[(incident.k + 2) % 3]});
-  const ContactTolerance tolerance =
-      ContactTolerance::of(width, std::min(face_a.cosine, face_b.cosine) > ContactTolerance::kFaceToFace);
+  const ContactTolerance tolerance = ContactTolerance::of(width, lie_face_to_face(face_a, face_b));
   // Sides in the order +u, +v, -u, -v, each from its lower to its upper corner as the loop runs for sign > 0.
   const std::uint32_t bit1 = 1u << k1, bit2 = 1u << k2,
                       base = static_cast<std::uint32_t>(reference.sign > 0.0) << k;
@@ -187,9 +190,10 @@ Manifold cross_edges(const BoxPair& pair, const Axis& axis, double margin) {
                                name_crossing(a.tail, a.head, b.tail, b.head));
 }
 
-Manifold make_manifold(const BoxPair& pair, const Axis& axis, double margin) {
+Manifold make_manifold(const BoxPair& pair, const Axis& axis, double margin, bool& face_to_face) {
   const BoxFace face_a = BoxFace::towards(axis.normal_A);
   const BoxFace face_b = BoxFace::towards(pair.R.transpose() * -axis.normal_A);
+  face_to_face = lie_face_to_face(face_a, face_b);
   const bool flat = face_a.cosine > kFlat && face_b.cosine > kFlat;
   if (axis.kind == Axis::Kind::edges && !flat) return cross_edges(pair, axis, margin);
   return clip_faces(pair, axis, face_a, face_b, axis.kind == Axis::Kind::face_a || face_a.cosine > kFlat,
@@ -212,8 +216,9 @@ Manifold collide_box_box(const Box& a, const Box& b, const Pose& X_AB, double ma
   cache.axis_A = best.normal_A;
   cache.gap = best.separation;
   if (beyond) return {};
-  return contact_of_closest_points(make_manifold(pair, best, margin), best.separation, a, b, X_AB, margin,
-                                   cache);
+  bool face_to_face = false;
+  const Manifold manifold = make_manifold(pair, best, margin, face_to_face);
+  return contact_of_closest_points(manifold, best.separation, face_to_face, a, b, X_AB, margin, cache);
 }
 
 }  // namespace tumble

@@ -43,7 +43,7 @@ std::size_t lowest_along(const PlacedFace& placed, const Vec3& n_A) {
 }
 
 Manifold clip_faces(const PlacedFace& reference, const PlacedFace& incident, bool reference_is_a,
-                    const Facet& facet, double margin) {
+                    const Facet& facet, double margin, bool face_to_face) {
   const Vec3& normal_A = facet.normal_A;
   FacePlane plane;
   plane.f_A = reference.R * reference.face.normal;
@@ -62,9 +62,6 @@ Manifold clip_faces(const PlacedFace& reference, const PlacedFace& incident, boo
 
   const double width =
       std::min(face_width(reference.body, reference.face), face_width(incident.body, incident.face));
-  const Vec3 incident_normal_A = incident.R * incident.face.normal;
-  const bool face_to_face =
-      std::min(plane.n_A.dot(plane.f_A), -plane.n_A.dot(incident_normal_A)) > ContactTolerance::kFaceToFace;
   const ContactTolerance tolerance = ContactTolerance::of(width, face_to_face);
   const auto corner = [&](int k) -> Vec3 {
     const Vec3 d = reference.vertex_A(k, 0) - plane.origin_A;
@@ -97,7 +94,7 @@ Manifold cross_edges(const PolytopePair& pair, const Facet& facet, double margin
                                name_crossing(edge_a.tail, edge_a.head, edge_b.tail, edge_b.head));
 }
 
-Manifold make_manifold(const PolytopePair& pair, const Facet& facet, double margin) {
+Manifold make_manifold(const PolytopePair& pair, const Facet& facet, double margin, bool& face_to_face) {
   const Mat3 identity = Mat3::Identity();
   const Vec3 zero = Vec3::Zero();
   const Vec3 towards_a_B = pair.R_AB.transpose() * -facet.normal_A;
@@ -110,13 +107,16 @@ Manifold make_manifold(const PolytopePair& pair, const Facet& facet, double marg
   } else {
     face_a = face_towards(pair.a, facet.normal_A);
   }
-  const bool flat_a = pair.a.faces[face_a].normal.dot(facet.normal_A) > kFlat;
-  const bool flat_b = pair.b.faces[face_b].normal.dot(towards_a_B) > kFlat;
+  const double cosine_a = pair.a.faces[face_a].normal.dot(facet.normal_A),
+               cosine_b = pair.b.faces[face_b].normal.dot(towards_a_B);
+  const bool flat_a = cosine_a > kFlat, flat_b = cosine_b > kFlat;
+  face_to_face = std::min(cosine_a, cosine_b) > ContactTolerance::kFaceToFace;
   if (facet.kind == Facet::Kind::edges && !(flat_a && flat_b)) return cross_edges(pair, facet, margin);
   const PlacedFace a{pair.a, pair.a.faces[face_a], identity, zero};
   const PlacedFace b{pair.b, pair.b.faces[face_b], pair.R_AB, pair.p_AB};
   const bool reference_is_a = facet.kind == Facet::Kind::face_a || flat_a;
-  return reference_is_a ? clip_faces(a, b, true, facet, margin) : clip_faces(b, a, false, facet, margin);
+  return reference_is_a ? clip_faces(a, b, true, facet, margin, face_to_face)
+                        : clip_faces(b, a, false, facet, margin, face_to_face);
 }
 
 /// The facet of the last search if its lead (kept by the pipeline) still holds, else a new search.
@@ -136,8 +136,9 @@ Manifold collide(const PolytopePair& pair, const Shape& a, const Shape& b, const
   cache.gap = separation;
   cache.slack = answer.lead;
   if (separation > margin) return {};
-  return contact_of_closest_points(make_manifold(pair, answer.facet, margin), separation, a, b, X_AB, margin,
-                                   cache);
+  bool face_to_face = false;
+  const Manifold manifold = make_manifold(pair, answer.facet, margin, face_to_face);
+  return contact_of_closest_points(manifold, separation, face_to_face, a, b, X_AB, margin, cache);
 }
 
 }  // namespace

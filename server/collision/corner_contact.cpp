@@ -26,8 +26,8 @@ double lowest(const Manifold& manifold) {
 
 }  // namespace
 
-Manifold contact_of_closest_points(Manifold manifold, double separation, const Shape& a, const Shape& b,
-                                   const Pose& X_AB, double margin, PairCache& cache) {
+Manifold contact_of_closest_points(Manifold manifold, double separation, bool face_to_face, const Shape& a,
+                                   const Shape& b, const Pose& X_AB, double margin, PairCache& cache) {
   const double rounding = kRounding * (bounding_radius(a) + bounding_radius(b));
   if (separation < -rounding || lowest(manifold) <= separation + rounding) {
     set_deepest(manifold, separation);
@@ -35,7 +35,7 @@ Manifold contact_of_closest_points(Manifold manifold, double separation, const S
   }
   const Distance distance = compute_distance(a, b, X_AB);
   // Bodies that lie face to face keep their whole polygon: clipping's tolerance for coincident edges left out the corner.
-  const bool lying = distance.axis_A.dot(manifold.normal_A) > ContactTolerance::kFaceToFace &&
+  const bool lying = face_to_face && distance.axis_A.dot(manifold.normal_A) > ContactTolerance::kFaceToFace &&
                      lowest(manifold) <= distance.upper + kLying * (bounding_radius(a) + bounding_radius(b));
   if (!distance.overlap && lying) {
     set_deepest(manifold, distance.upper);

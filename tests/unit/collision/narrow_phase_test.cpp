@@ -228,8 +228,7 @@ TEST(EveryPair, SwappedShapesSayTheSameToTheBit) {
   RandomPose random(32);
   const std::vector<Shape> shapes = one_of_each();
   const int n = static_cast<int>(shapes.size());
-  int contacts = 0;
-  for (int i = 0; i < 6000; ++i) {
+  for (int i = 0, contacts = 0; i < 6000; ++i) {
     const Shape& a = shapes[static_cast<std::size_t>(i % n)];
     const Shape& b = shapes[static_cast<std::size_t>(i / n % n)];
     const Pose X_WA = random.pose(0.7), X_WB = random.pose(0.7);
@@ -240,8 +239,8 @@ TEST(EveryPair, SwappedShapesSayTheSameToTheBit) {
     ASSERT_TRUE(same_to_the_bit(m_swapped, other) || same_to_the_bit(other_swapped, m))
         << shape_name(a) << ' ' << shape_name(b);
     contacts += m.count > 0;
+    ASSERT_TRUE(i < 5999 || contacts > 2000);
   }
-  EXPECT_GT(contacts, 2000);
 }
 
 /// Two equal bodies that turn round each other do not change roles on the way.

@@ -47,6 +47,12 @@ Shape make_shape(const control_t& c) {
       return Sphere{c.size[0]};
     case catalog_t::SHAPE_CAPSULE:
       return Capsule{c.size[0], 0.5 * c.size[1]};
+    case catalog_t::SHAPE_CYLINDER:
+      return Cylinder{c.size[0], 0.5 * c.size[1]};
+    case catalog_t::SHAPE_CONE:
+      return Cone{c.size[0], 0.5 * c.size[1]};
+    case catalog_t::SHAPE_ELLIPSOID:
+      return Ellipsoid{to_vector(c.size)};
     default:
       return Box{0.5 * to_vector(c.size)};
   }

@@ -21,6 +21,9 @@ struct Name {
   const char* operator()(const Capsule&) const { return "capsule"; }
   const char* operator()(const Box&) const { return "box"; }
   const char* operator()(const HullPointer&) const { return "convex_hull"; }
+  const char* operator()(const Cylinder&) const { return "cylinder"; }
+  const char* operator()(const Cone&) const { return "cone"; }
+  const char* operator()(const Ellipsoid&) const { return "ellipsoid"; }
   const char* operator()(const TriangleMeshPointer&) const { return "triangle_mesh"; }
   const char* operator()(const HeightFieldPointer&) const { return "height_field"; }
 };
@@ -33,20 +36,30 @@ std::string check_length(const char* field, double value) {
   return text.str();
 }
 
+std::string check_round(double radius, double half_length) {
+  const std::string problem = check_length("radius", radius);
+  return problem.empty() ? check_length("half_length", half_length) : problem;
+}
+
+std::string check_lengths(const std::array<const char*, 3>& fields, const Vec3& lengths) {
+  for (int i = 0; i < 3; ++i) {
+    std::string problem = check_length(fields[static_cast<std::size_t>(i)], lengths[i]);
+    if (!problem.empty()) return problem;
+  }
+  return {};
+}
+
 struct Check {
   std::string operator()(const HalfSpace&) const { return {}; }
   std::string operator()(const Sphere& s) const { return check_length("radius", s.radius); }
-  std::string operator()(const Capsule& c) const {
-    const std::string radius = check_length("radius", c.radius);
-    return radius.empty() ? check_length("half_length", c.half_length) : radius;
-  }
+  std::string operator()(const Capsule& c) const { return check_round(c.radius, c.half_length); }
+  std::string operator()(const Cylinder& c) const { return check_round(c.radius, c.half_length); }
+  std::string operator()(const Cone& c) const { return check_round(c.radius, c.half_length); }
   std::string operator()(const Box& b) const {
-    constexpr std::array<const char*, 3> fields = {"half_extents.x", "half_extents.y", "half_extents.z"};
-    for (int i = 0; i < 3; ++i) {
-      std::string problem = check_length(fields[static_cast<std::size_t>(i)], b.half_extents[i]);
-      if (!problem.empty()) return problem;
-    }
-    return {};
+    return check_lengths({"half_extents.x", "half_extents.y", "half_extents.z"}, b.half_extents);
+  }
+  std::string operator()(const Ellipsoid& e) const {
+    return check_lengths({"half_axes.x", "half_axes.y", "half_axes.z"}, e.half_axes);
   }
   std::string operator()(const HullPointer& h) const {
     if (!h) return "hull: missing";
@@ -60,8 +73,9 @@ struct Check {
   std::string operator()(const HeightFieldPointer& h) const { return h ? "" : "height field: missing"; }
 };
 
-struct Bounds {
-  const Pose& X_WS;
+class Bounds {
+ public:
+  explicit Bounds(const Pose& pose) : X_WS(pose) {}
 
   Aabb operator()(const HalfSpace&) const {
     Aabb bounds{Vec3::Constant(-kInfinity), Vec3::Constant(kInfinity)};
@@ -93,8 +107,28 @@ struct Bounds {
     }
     return bounds;
   }
+  Aabb operator()(const Cylinder& c) const {
+    const Mat3 R = rotation_matrix(X_WS.q);
+    const Vec3 reach = c.half_length * R.col(2).cwiseAbs() + c.radius * disc_reach(R);
+    return {X_WS.p - reach, X_WS.p + reach};
+  }
+  Aabb operator()(const Cone& c) const {
+    const Mat3 R = rotation_matrix(X_WS.q);
+    const Vec3 apex = c.half_length * R.col(2), rim = c.radius * disc_reach(R);
+    return {X_WS.p + apex.cwiseMin(-apex - rim), X_WS.p + apex.cwiseMax(-apex + rim)};
+  }
+  Aabb operator()(const Ellipsoid& e) const {
+    const Vec3 reach = (rotation_matrix(X_WS.q) * e.half_axes.asDiagonal()).rowwise().norm();
+    return {X_WS.p - reach, X_WS.p + reach};
+  }
   Aabb operator()(const TriangleMeshPointer& m) const { return m->bounds().transformed(X_WS); }
   Aabb operator()(const HeightFieldPointer& h) const { return h->bounds().transformed(X_WS); }
+
+ private:
+  /// Half extents of a unit disc across the z axis.
+  static Vec3 disc_reach(const Mat3& R) { return R.leftCols<2>().rowwise().norm(); }
+
+  const Pose& X_WS;
 };
 
 struct Radius {
@@ -103,13 +137,27 @@ struct Radius {
   double operator()(const Capsule& c) const { return c.half_length + c.radius; }
   double operator()(const Box& b) const { return b.half_extents.norm(); }
   double operator()(const HullPointer& h) const { return h->radius; }
+  double operator()(const Cylinder& c) const { return rim_distance(c.radius, c.half_length); }
+  double operator()(const Cone& c) const { return rim_distance(c.radius, c.half_length); }
+  double operator()(const Ellipsoid& e) const { return e.half_axes.maxCoeff(); }
   double operator()(const TriangleMeshPointer& m) const { return m->radius(); }
   double operator()(const HeightFieldPointer& h) const { return h->radius(); }
+
+ private:
+  static double rim_distance(double r, double l) { return std::sqrt(r * r + l * l); }
 };
 
 Vec3 scaled_to(const Vec3& d, double length) {
   const double norm = d.stableNorm();
   return norm > 0.0 ? Vec3(d * (length / norm)) : Vec3(0, 0, length);
+}
+
+/// Furthest point along d of the circle of radius r across the z axis at height z.
+Vec3 rim_point(const Vec3& d, double r, double z) {
+  const double norm = d.head<2>().stableNorm();
+  if (!(norm > 0.0)) return {std::copysign(r, d.x()), 0.0, z};
+  const double scale = r / norm;
+  return {d.x() * scale, d.y() * scale, z};
 }
 
 std::size_t furthest_vertex(const ConvexHull& hull, const Vec3& d) {
@@ -147,6 +195,18 @@ struct Support {
             std::copysign(b.half_extents.z(), d.z())};
   }
   Vec3 operator()(const HullPointer& h) const { return h->vertices[furthest_vertex(*h, d)]; }
+  Vec3 operator()(const Cylinder& c) const {
+    return rim_point(d, c.radius, std::copysign(c.half_length, d.z()));
+  }
+  Vec3 operator()(const Cone& c) const {
+    const Vec3 rim = rim_point(d, c.radius, -c.half_length);
+    const Vec3 apex(0, 0, c.half_length);
+    return d.dot(apex - rim) >= 0.0 ? apex : rim;
+  }
+  /// a^2 d / |a d|, componentwise.
+  Vec3 operator()(const Ellipsoid& e) const {
+    return e.half_axes.cwiseProduct(scaled_to(e.half_axes.cwiseProduct(d), 1.0));
+  }
   Vec3 operator()(const TriangleMeshPointer&) const { return Vec3::Zero(); }
   Vec3 operator()(const HeightFieldPointer&) const { return Vec3::Zero(); }
 };
@@ -168,7 +228,7 @@ bool is_static_only(const Shape& shape) {
   return std::holds_alternative<HalfSpace>(shape) || surface_of(shape) != nullptr;
 }
 Aabb compute_aabb(const Shape& shape, const Pose& X_WS) {
-  return std::visit(Bounds{X_WS}, shape);
+  return std::visit(Bounds(X_WS), shape);
 }
 double bounding_radius(const Shape& shape) {
   return std::visit(Radius{}, shape);

@@ -25,6 +25,18 @@ struct Box {
 struct Capsule {
   double radius, half_length;
 };
+/// Axis z, caps at z = +-half_length.
+struct Cylinder {
+  double radius, half_length;
+};
+/// Axis z, base at z = -half_length, apex at z = +half_length (SDFormat's convention: S lies at half the height).
+struct Cone {
+  double radius, half_length;
+};
+/// Half axes along S's axes.
+struct Ellipsoid {
+  Vec3 half_axes;
+};
 /// Everything with z_S <= 0; the surface normal is +z_S. Static bodies only: it has no mass.
 struct HalfSpace {};
 /// Shared, since hulls are big and constant.
@@ -32,12 +44,12 @@ using HullPointer = std::shared_ptr<const ConvexHull>;
 
 /// The order of the alternatives is the order of the pair matrix in narrow_phase.cpp.
 /// Half-spaces and the surfaces at the end belong to static bodies only: they have no mass.
-using Shape =
-    std::variant<HalfSpace, Sphere, Capsule, Box, HullPointer, TriangleMeshPointer, HeightFieldPointer>;
+using Shape = std::variant<HalfSpace, Sphere, Capsule, Box, HullPointer, Cylinder, Cone, Ellipsoid,
+                           TriangleMeshPointer, HeightFieldPointer>;
 inline constexpr std::size_t kShapeTypes = std::variant_size_v<Shape>;
 
 /// Plain lower-case name of the shape's type, as on the wire: "half_space", "sphere", "capsule", "box", "convex_hull",
-/// "triangle_mesh", "height_field".
+/// "cylinder", "cone", "ellipsoid", "triangle_mesh", "height_field".
 const char* shape_name(const Shape& shape);
 
 /// Empty if the shape is sound, else "field: what is wrong with which value".

@@ -30,6 +30,29 @@ Inertia box_inertia(const Vec3& h, double density) {
   return {m, Vec3::Zero(), moments.asDiagonal()};
 }
 
+/// 1/2 m r^2 about the axis, 1/4 m r^2 + 1/12 m (2 l)^2 across.
+Inertia cylinder_inertia(double r, double l, double density) {
+  const double m = density * pi * r * r * (2.0 * l);
+  const double across = m * (0.25 * r * r + l * l / 3.0);
+  return {m, Vec3::Zero(), Vec3(across, across, 0.5 * m * r * r).asDiagonal()};
+}
+
+/// Height 2 l; the centre lies a quarter of it above the base. 3/10 m r^2 about the axis, and
+/// 3/20 m r^2 + 3/80 m (2 l)^2 across it through the centre.
+Inertia cone_inertia(double r, double l, double density) {
+  const double m = density * pi * r * r * (2.0 * l) / 3.0;
+  const double across = 0.15 * m * (r * r + l * l);
+  return {m, Vec3(0, 0, -0.5 * l), Vec3(across, across, 0.3 * m * r * r).asDiagonal()};
+}
+
+/// 1/5 m (a_y^2 + a_z^2).
+Inertia ellipsoid_inertia(const Vec3& a, double density) {
+  const double m = density * (4.0 / 3.0) * pi * a.x() * a.y() * a.z();
+  const Vec3 a2 = a.cwiseAbs2();
+  const Vec3 moments = (0.2 * m) * Vec3(a2.y() + a2.z(), a2.z() + a2.x(), a2.x() + a2.y());
+  return {m, Vec3::Zero(), moments.asDiagonal()};
+}
+
 /// A cylinder of length 2 l and two half-spheres, whose own centres lie 3/8 r beyond its ends.
 Inertia capsule_inertia(double r, double l, double density) {
   const double cylinder = density * pi * r * r * (2.0 * l);
@@ -84,6 +107,9 @@ struct InertiaOf {
   Inertia operator()(const Sphere& s) const { return sphere_inertia(s.radius, density); }
   Inertia operator()(const Box& b) const { return box_inertia(b.half_extents, density); }
   Inertia operator()(const Capsule& c) const { return capsule_inertia(c.radius, c.half_length, density); }
+  Inertia operator()(const Cylinder& c) const { return cylinder_inertia(c.radius, c.half_length, density); }
+  Inertia operator()(const Cone& c) const { return cone_inertia(c.radius, c.half_length, density); }
+  Inertia operator()(const Ellipsoid& e) const { return ellipsoid_inertia(e.half_axes, density); }
   Inertia operator()(const HullPointer& hull) const { return hull_inertia(*hull, density); }
   Inertia operator()(const TriangleMeshPointer&) const {
     throw std::invalid_argument("shape: a triangle_mesh has no mass");

@@ -49,6 +49,13 @@ struct ShapeCoder {
     return {catalog_t::SHAPE_CAPSULE, Vec3(c.radius, 2.0 * c.half_length, 0.0)};
   }
   ShapeCode operator()(const Box& b) const { return {catalog_t::SHAPE_BOX, 2.0 * b.half_extents}; }
+  ShapeCode operator()(const Cylinder& c) const {
+    return {catalog_t::SHAPE_CYLINDER, Vec3(c.radius, 2.0 * c.half_length, 0.0)};
+  }
+  ShapeCode operator()(const Cone& c) const {
+    return {catalog_t::SHAPE_CONE, Vec3(c.radius, 2.0 * c.half_length, 0.0)};
+  }
+  ShapeCode operator()(const Ellipsoid& e) const { return {catalog_t::SHAPE_ELLIPSOID, e.half_axes}; }
   ShapeCode operator()(const TriangleMeshPointer& m) const {
     return surface_code(catalog_t::SHAPE_TRIANGLE_MESH, m->bounds());
   }

@@ -52,10 +52,11 @@ void check_motion(const control_t& c, RangeCheck& check) {
 
 void check_spawn(const control_t& c, RangeCheck& check) {
   check.within("body_type", c.body_type, catalog_t::TYPE_STATIC, catalog_t::TYPE_KINEMATIC)
-      .within("shape_type", c.shape_type, catalog_t::SHAPE_HALF_SPACE, catalog_t::SHAPE_BOX)
+      .within("shape_type", c.shape_type, catalog_t::SHAPE_HALF_SPACE, catalog_t::SHAPE_ELLIPSOID)
+      .demand(c.shape_type != catalog_t::SHAPE_HULL, "shape_type: a hull can't be spawned")
       .demand(c.shape_type != catalog_t::SHAPE_HALF_SPACE || c.body_type == catalog_t::TYPE_STATIC,
               "shape_type: only a static body can be a half-space");
-  const int sizes[] = {0, 1, 2, 3};  // numbers of `size` that half-space, sphere, capsule and box read
+  const int sizes[] = {0, 1, 2, 3, 0, 2, 2, 3};  // numbers of `size` that each shape reads, by SHAPE_*
   for (int i = 0; !check.failed() && i < sizes[c.shape_type]; ++i) {
     check.within("size", c.size[i], kMinSize, kMaxSize);
   }

@@ -30,10 +30,16 @@ Shape read_sphere(SdfElement& sphere) {
   return Sphere{sphere.required_child("radius").to_number(Range::positive)};
 }
 
-Shape read_capsule(SdfElement& capsule) {
-  const double radius = capsule.required_child("radius").to_number(Range::positive);
-  const double length = capsule.required_child("length").to_number(Range::positive);
-  return Capsule{radius, 0.5 * length};
+/// Capsule, cylinder or cone.
+template <class Round>
+Shape read_round(SdfElement& round) {
+  const double radius = round.required_child("radius").to_number(Range::positive);
+  const double length = round.required_child("length").to_number(Range::positive);
+  return Round{radius, 0.5 * length};
+}
+
+Shape read_ellipsoid(SdfElement& ellipsoid) {
+  return Ellipsoid{read_positive_vector(ellipsoid.required_child("radii"))};
 }
 
 HullPointer build_hull(const SdfElement& element, const std::vector<Vec3>& points) {
@@ -188,23 +194,28 @@ void read_plane(SdfElement& plane, GeometryDefinition& geometry) {
 }
 
 void read_geometry(SdfElement geometry, BodyType type, GeometryDefinition& definition) {
-  std::vector<SdfElement> shapes =
-      geometry.children({"sphere", "box", "capsule", "plane", "mesh", "heightmap", "tumble:convex_hull",
-                         "tumble:triangle_mesh", "tumble:height_field"});
-  for (const char* unsupported : {"cylinder", "cone", "ellipsoid", "image", "polyline", "empty"}) {
+  std::vector<SdfElement> shapes = geometry.children(
+      {"sphere", "box", "capsule", "cylinder", "cone", "ellipsoid", "plane", "mesh", "heightmap",
+       "tumble:convex_hull", "tumble:triangle_mesh", "tumble:height_field"});
+  for (const char* unsupported : {"image", "polyline", "empty"}) {
     geometry.refuse(unsupported,
-                    "this geometry is not supported: use sphere, box, capsule, plane, mesh, heightmap or "
-                    "tumble:convex_hull");
+                    "this geometry is not supported: use sphere, box, capsule, cylinder, cone, ellipsoid, plane, "
+                    "mesh, heightmap or tumble:convex_hull");
   }
   geometry.finish();
   if (shapes.empty()) {
-    geometry.fail("needs one of sphere, box, capsule, plane, mesh, heightmap, tumble:convex_hull");
+    geometry.fail(
+        "needs one of sphere, box, capsule, cylinder, cone, ellipsoid, plane, mesh, heightmap, "
+        "tumble:convex_hull");
   }
   if (shapes.size() > 1) shapes[1].fail("a geometry has one shape only");
   SdfElement& shape = shapes[0];
   if (shape.tag() == "sphere") definition.shape = read_sphere(shape);
   if (shape.tag() == "box") definition.shape = read_box(shape);
-  if (shape.tag() == "capsule") definition.shape = read_capsule(shape);
+  if (shape.tag() == "capsule") definition.shape = read_round<Capsule>(shape);
+  if (shape.tag() == "cylinder") definition.shape = read_round<Cylinder>(shape);
+  if (shape.tag() == "cone") definition.shape = read_round<Cone>(shape);
+  if (shape.tag() == "ellipsoid") definition.shape = read_ellipsoid(shape);
   if (shape.tag() == "mesh") definition.shape = read_mesh(shape, type);
   if (shape.tag() == "heightmap") definition.shape = read_heightmap(shape, definition);
   if (shape.tag() == "tumble:triangle_mesh") definition.shape = read_triangle_mesh(shape);

@@ -96,10 +96,28 @@ void write_shape(tinyxml2::XMLPrinter& out, const Box& box) {
   write(out, "size", Vec3(2.0 * box.half_extents));
 }
 
+template <class Round>
+void write_round(tinyxml2::XMLPrinter& out, const char* tag, const Round& round) {
+  Tag shape(out, tag);
+  write(out, "radius", round.radius);
+  write(out, "length", 2.0 * round.half_length);
+}
+
 void write_shape(tinyxml2::XMLPrinter& out, const Capsule& capsule) {
-  Tag shape(out, "capsule");
-  write(out, "radius", capsule.radius);
-  write(out, "length", 2.0 * capsule.half_length);
+  write_round(out, "capsule", capsule);
+}
+
+void write_shape(tinyxml2::XMLPrinter& out, const Cylinder& cylinder) {
+  write_round(out, "cylinder", cylinder);
+}
+
+void write_shape(tinyxml2::XMLPrinter& out, const Cone& cone) {
+  write_round(out, "cone", cone);
+}
+
+void write_shape(tinyxml2::XMLPrinter& out, const Ellipsoid& ellipsoid) {
+  Tag shape(out, "ellipsoid");
+  write(out, "radii", ellipsoid.half_axes);
 }
 
 void write_shape(tinyxml2::XMLPrinter& out, const HullPointer& hull) {

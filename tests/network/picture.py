@@ -57,6 +57,15 @@ def capsule_faces(radius, length, rings=5, sectors=12):
             for a, b in zip(latitudes, latitudes[1:]) for s, t in zip(turns, turns[1:])]
 
 
+def round_faces(radius, length, taper, sectors=16):
+    """Sides and caps of a cylinder along z (taper 1), or of a cone with its apex up (taper 0)."""
+    turns = np.linspace(0, 2 * np.pi, sectors + 1)
+    low = np.column_stack([radius * np.cos(turns), radius * np.sin(turns), np.full(sectors + 1, -length / 2)])
+    high = low * (taper, taper, -1)
+    sides = [np.array([low[i], low[i + 1], high[i + 1], high[i]]) for i in range(sectors)]
+    return sides + [low[:0:-1], high[:-1]][:2 if taper else 1]
+
+
 def hull_faces(vertices):
     """Triangles of the convex hull."""
     from scipy.spatial import ConvexHull
@@ -76,6 +85,10 @@ def shape_faces(message, i, vertices):
         return box_faces(size)
     if kind in (catalog_t.SHAPE_SPHERE, catalog_t.SHAPE_CAPSULE):
         return capsule_faces(size[0], size[1] if kind == catalog_t.SHAPE_CAPSULE else 0.0)
+    if kind in (catalog_t.SHAPE_CYLINDER, catalog_t.SHAPE_CONE):
+        return round_faces(size[0], size[1], 1.0 if kind == catalog_t.SHAPE_CYLINDER else 0.0)
+    if kind == catalog_t.SHAPE_ELLIPSOID:
+        return [face * size for face in capsule_faces(1.0, 0.0)]
     if kind in (catalog_t.SHAPE_HULL, catalog_t.SHAPE_TRIANGLE_MESH, catalog_t.SHAPE_HEIGHT_FIELD):
         return hull_faces(vertices[message.shape_body[i], message.shape_number[i]])
     return []

@@ -17,9 +17,13 @@ std::string shape_text(const Body& body) {
     case catalog_t::SHAPE_SPHERE:
       return fmt::format("sphere {:.4g}", size[0]);
     case catalog_t::SHAPE_CAPSULE:
-      return fmt::format("capsule {:.4g} x {:.4g}", size[0], size[1]);
+    case catalog_t::SHAPE_CYLINDER:
+    case catalog_t::SHAPE_CONE:
+      return fmt::format("{} {:.4g} x {:.4g}", shape_type_name(shape.type), size[0], size[1]);
     case catalog_t::SHAPE_BOX:
-      return fmt::format("box {:.4g} x {:.4g} x {:.4g}", size[0], size[1], size[2]);
+    case catalog_t::SHAPE_ELLIPSOID:
+      return fmt::format("{} {:.4g} x {:.4g} x {:.4g}", shape_type_name(shape.type), size[0], size[1],
+                         size[2]);
     case catalog_t::SHAPE_HULL:
       return fmt::format("hull, {} vertices", shape.num_vertices);
     case catalog_t::SHAPE_TRIANGLE_MESH:

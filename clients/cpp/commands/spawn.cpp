@@ -16,6 +16,8 @@ std::size_t num_lengths(std::int8_t shape_type) {
     case catalog_t::SHAPE_SPHERE:
       return 1;
     case catalog_t::SHAPE_CAPSULE:
+    case catalog_t::SHAPE_CYLINDER:
+    case catalog_t::SHAPE_CONE:
       return 2;
   }
   return 3;
@@ -34,8 +36,8 @@ void take_lists(SpawnArguments& arguments) {
     throw CLI::ValidationError("--size", std::string("a ") + shape_type_name(spawn.shape_type) + " has " +
                                              std::to_string(expected) +
                                              (expected == 1   ? " length (its radius)"
-                                              : expected == 2 ? " lengths (radius, straight length)"
-                                                              : " lengths (edges along x, y, z)") +
+                                              : expected == 2 ? " lengths (radius, length)"
+                                                              : " lengths (along x, y, z)") +
                                              ", given were " + std::to_string(arguments.size.size()));
   }
   std::copy(arguments.size.begin(), arguments.size.end(), spawn.size.begin());
@@ -59,13 +61,17 @@ void add_spawn_command(CLI::App& app, const Globals& globals, Action& action) {
   add_choice<std::int8_t>(*command, "SHAPE", body.shape_type,
                           {{"sphere", catalog_t::SHAPE_SPHERE},
                            {"box", catalog_t::SHAPE_BOX},
-                           {"capsule", catalog_t::SHAPE_CAPSULE}},
+                           {"capsule", catalog_t::SHAPE_CAPSULE},
+                           {"cylinder", catalog_t::SHAPE_CYLINDER},
+                           {"cone", catalog_t::SHAPE_CONE},
+                           {"ellipsoid", catalog_t::SHAPE_ELLIPSOID}},
                           "What it looks like")
       ->required();
   command->add_option("--name", body.name, "Its name, new in the world")->required();
   command
       ->add_option("--size", arguments->size,
-                   "[m] sphere: radius; capsule: radius, straight length; box: three edges")
+                   "[m] sphere: radius; capsule, cylinder, cone: radius, length (of a capsule the straight part); box: "
+                   "three edges; ellipsoid: three half axes")
       ->required()
       ->expected(1, 3)
       ->check(CLI::PositiveNumber);

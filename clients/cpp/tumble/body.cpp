@@ -28,6 +28,12 @@ const char* shape_type_name(std::int8_t type) {
       return "box";
     case catalog_t::SHAPE_HULL:
       return "convex_hull";
+    case catalog_t::SHAPE_CYLINDER:
+      return "cylinder";
+    case catalog_t::SHAPE_CONE:
+      return "cone";
+    case catalog_t::SHAPE_ELLIPSOID:
+      return "ellipsoid";
     case catalog_t::SHAPE_TRIANGLE_MESH:
       return "triangle_mesh";
     case catalog_t::SHAPE_HEIGHT_FIELD:

@@ -22,6 +22,9 @@ SHAPE_NAMES = {
     catalog_t.SHAPE_CAPSULE: "capsule",
     catalog_t.SHAPE_BOX: "box",
     catalog_t.SHAPE_HULL: "convex_hull",
+    catalog_t.SHAPE_CYLINDER: "cylinder",
+    catalog_t.SHAPE_CONE: "cone",
+    catalog_t.SHAPE_ELLIPSOID: "ellipsoid",
     catalog_t.SHAPE_TRIANGLE_MESH: "triangle_mesh",
     catalog_t.SHAPE_HEIGHT_FIELD: "height_field",
 }
@@ -34,7 +37,8 @@ class Shape:
 
     type: str
     size: Tuple[float, float, float]
-    """sphere: radius; capsule: radius, straight length; box: three edges; surface: of its bounds; else zeros."""
+    """sphere: radius; capsule: radius, straight length; cylinder, cone: radius, length; box: three edges; ellipsoid:
+    three half axes; surface: of its bounds; else zeros."""
     position: Tuple[float, float, float]
     orientation: Tuple[float, float, float, float]
     friction: float

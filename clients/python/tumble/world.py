@@ -24,7 +24,15 @@ QUEUE_CAPACITY = 10000
 
 Vector = Sequence[float]
 _FRAMES = {"world": force_command_t.FRAME_WORLD, "body": force_command_t.FRAME_BODY}
-_SHAPES = {"sphere": catalog_t.SHAPE_SPHERE, "capsule": catalog_t.SHAPE_CAPSULE, "box": catalog_t.SHAPE_BOX}
+_SHAPES = {
+    "sphere": catalog_t.SHAPE_SPHERE,
+    "capsule": catalog_t.SHAPE_CAPSULE,
+    "box": catalog_t.SHAPE_BOX,
+    "cylinder": catalog_t.SHAPE_CYLINDER,
+    "cone": catalog_t.SHAPE_CONE,
+    "ellipsoid": catalog_t.SHAPE_ELLIPSOID,
+}
+_NUM_LENGTHS = {"sphere": 1, "capsule": 2, "box": 3, "cylinder": 2, "cone": 2, "ellipsoid": 3}
 _TYPES = {"static": catalog_t.TYPE_STATIC, "dynamic": catalog_t.TYPE_DYNAMIC, "kinematic": catalog_t.TYPE_KINEMATIC}
 
 
@@ -262,14 +270,15 @@ class World:
     ) -> Body:
         """A new body, returned when it has arrived.
 
-        `size` [m]: of a "sphere" its radius, of a "capsule" (radius, straight length), of a "box" its three edges.
+        `size` [m]: of a "sphere" its radius, of a "capsule" (radius, straight length), of a "cylinder" or "cone"
+        (radius, length along z), of a "box" its three edges, of an "ellipsoid" its three half axes.
         `mass` [kg]; None: from a density of 1000 kg/m^3. `type`: "dynamic", "static" or "kinematic".
         """
         command = _make_control(control_t.VERB_SPAWN)
         command.name = name
         command.shape_type, command.body_type = _choose("shape", shape, _SHAPES), _choose("type", type, _TYPES)
         lengths = [float(size)] if isinstance(size, (int, float)) else [float(length) for length in size]
-        expected = {"sphere": 1, "capsule": 2, "box": 3}[shape]
+        expected = _NUM_LENGTHS[shape]
         if len(lengths) != expected:
             raise ValueError(f"size: a {shape} has {expected} length(s), given were {len(lengths)}")
         command.size = lengths + [0.0] * (3 - expected)

@@ -15,7 +15,8 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 std::vector<Shape> solids() {
   RandomPose random(71);
   return {Sphere{0.4}, Capsule{0.3, 0.6}, Box{Vec3(0.5, 0.3, 0.7)},
-          random_hull(random, 16, Vec3(0.6, 0.5, 0.7))};
+          random_hull(random, 16, Vec3(0.6, 0.5, 0.7)), Cylinder{0.4, 0.5}, Cone{0.4, 0.5},
+          Ellipsoid{Vec3(0.3, 0.5, 0.7)}};
 }
 
 TEST(Shape, BoundsAreTheSupportsAlongTheAxes) {
@@ -54,6 +55,11 @@ TEST(Shape, SupportOfMirroredDirectionsIsMirrored) {
   const Box box{Vec3(1, 2, 3)};
   EXPECT_EQ(support(box, Vec3(0.0, 0.0, 1.0)), Vec3(1, 2, 3));
   EXPECT_EQ(support(box, Vec3(-0.0, -0.0, -1.0)), Vec3(-1, -2, -3));
+  for (const Vec3& d : {Vec3(0, 0, 1), Vec3(1, 2, 0), Vec3(-1, 2, 3)}) {
+    EXPECT_EQ(support(Cylinder{2, 3}, -d), -support(Cylinder{2, 3}, d));
+    EXPECT_EQ(support(Ellipsoid{Vec3(1, 2, 3)}, -d), -support(Ellipsoid{Vec3(1, 2, 3)}, d));
+  }
+  for (const Shape& shape : solids()) EXPECT_TRUE(support(shape, Vec3::Zero()).allFinite());
   EXPECT_TRUE(support(Sphere{1.0}, Vec3::Zero()).allFinite());
   EXPECT_TRUE(support(Capsule{1.0, 1.0}, Vec3::Zero()).allFinite());
 }
@@ -108,6 +114,9 @@ TEST(Shape, ChecksNameFieldAndValue) {
   EXPECT_EQ(check_shape(Sphere{0.5}), "");
   EXPECT_EQ(check_shape(Sphere{-2.0}), "radius: must be finite and > 0, is -2");
   EXPECT_EQ(check_shape(Capsule{1.0, 0.0}), "half_length: must be finite and > 0, is 0");
+  EXPECT_EQ(check_shape(Cylinder{-1.0, 1.0}), "radius: must be finite and > 0, is -1");
+  EXPECT_EQ(check_shape(Cone{1.0, kInfinity}), "half_length: must be finite and > 0, is inf");
+  EXPECT_EQ(check_shape(Ellipsoid{Vec3(1, 1, 0)}), "half_axes.z: must be finite and > 0, is 0");
   EXPECT_EQ(check_shape(Box{Vec3(1, kInfinity, 1)}), "half_extents.y: must be finite and > 0, is inf");
   EXPECT_NE(check_shape(HullPointer{}), "");
   EXPECT_EQ(check_shape(solids()[3]), "");
@@ -120,6 +129,9 @@ TEST(Shape, NamesAreThoseOfTheWire) {
   EXPECT_STREQ(shape_name(Capsule{1, 1}), "capsule");
   EXPECT_STREQ(shape_name(Box{Vec3::Ones()}), "box");
   EXPECT_STREQ(shape_name(HullPointer{}), "convex_hull");
+  EXPECT_STREQ(shape_name(Cylinder{1, 1}), "cylinder");
+  EXPECT_STREQ(shape_name(Cone{1, 1}), "cone");
+  EXPECT_STREQ(shape_name(Ellipsoid{Vec3::Ones()}), "ellipsoid");
 }
 
 }  // namespace

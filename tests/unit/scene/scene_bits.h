@@ -56,10 +56,13 @@ class SceneBits {
   void add(const HalfSpace&) {}
   void add(const Sphere& sphere) { add(sphere.radius); }
   void add(const Box& box) { add(box.half_extents); }
-  void add(const Capsule& capsule) {
-    add(capsule.radius);
-    add(capsule.half_length);
+  template <class Round>
+    requires requires(const Round& round) { round.half_length; }
+  void add(const Round& round) {
+    add(round.radius);
+    add(round.half_length);
   }
+  void add(const Ellipsoid& ellipsoid) { add(ellipsoid.half_axes); }
   void add(const HullPointer& hull) {
     for (const Vec3& p : hull->vertices) add(p);
     for (const std::uint32_t i : hull->loops) add(std::uint64_t{i});

@@ -93,11 +93,16 @@ TEST(SdfError, Poses) {
 
 TEST(SdfError, Geometry) {
   check(
-      {{in_geometry("<cylinder><radius>1</radius><length>1</length></cylinder>"),
-        "s.sdf:6: <cylinder>: this geometry is not supported: use sphere, box, capsule, plane, mesh, "
-        "heightmap or tumble:convex_hull"},
+      {{in_geometry("<polyline/>"),
+        "s.sdf:6: <polyline>: this geometry is not supported: use sphere, box, capsule, cylinder, cone, ellipsoid, "
+        "plane, mesh, heightmap or tumble:convex_hull"},
        {in_geometry(""),
-        "s.sdf:5: <geometry>: needs one of sphere, box, capsule, plane, mesh, heightmap, tumble:convex_hull"},
+        "s.sdf:5: <geometry>: needs one of sphere, box, capsule, cylinder, cone, ellipsoid, plane, mesh, heightmap, "
+        "tumble:convex_hull"},
+       {in_geometry("<cylinder><radius>1</radius></cylinder>"), "s.sdf:6: <cylinder>: needs a <length>"},
+       {in_geometry("<cone><radius>-1</radius><length>1</length></cone>"),
+        "s.sdf:6: <radius>: must be > 0 (-1)"},
+       {in_geometry("<ellipsoid><radii>1 0 1</radii></ellipsoid>"), "s.sdf:6: <radii>: must be > 0 (1 0 1)"},
        {in_geometry("<sphere><radius>1</radius></sphere>\n<box><size>1 1 1</size></box>"),
         "s.sdf:7: <box>: a geometry has one shape only"},
        {in_geometry("<sphere/>"), "s.sdf:6: <sphere>: needs a <radius>"},

@@ -74,6 +74,14 @@ TEST(Sdf, Shapes) {
   const Shape capsule = read_geometry("<capsule><radius>0.1</radius><length>3</length></capsule>").shape;
   EXPECT_EQ(std::get<Capsule>(capsule).radius, 0.1);
   EXPECT_EQ(std::get<Capsule>(capsule).half_length, 1.5);
+  const Shape cylinder = read_geometry("<cylinder><radius>0.1</radius><length>3</length></cylinder>").shape;
+  EXPECT_EQ(std::get<Cylinder>(cylinder).radius, 0.1);
+  EXPECT_EQ(std::get<Cylinder>(cylinder).half_length, 1.5);
+  const Shape cone = read_geometry("<cone><radius>0.1</radius><length>3</length></cone>").shape;
+  EXPECT_EQ(std::get<Cone>(cone).radius, 0.1);
+  EXPECT_EQ(std::get<Cone>(cone).half_length, 1.5);
+  const Shape ellipsoid = read_geometry("<ellipsoid><radii>1 2 3</radii></ellipsoid>").shape;
+  EXPECT_EQ(std::get<Ellipsoid>(ellipsoid).half_axes, Vec3(1, 2, 3));
   const GeometryDefinition tetrahedron = read_geometry(
       "<tumble:convex_hull><tumble:points>0 0 0 1 0 0 0 1 0 0 0 1</tumble:points></tumble:convex_hull>");
   const HullPointer* pointer = std::get_if<HullPointer>(&tetrahedron.shape);

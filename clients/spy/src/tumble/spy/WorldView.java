@@ -126,15 +126,26 @@ final class WorldView extends JPanel {
         double[] s = shape.size;
         switch (shape.type) {
             case catalog_t.SHAPE_SPHERE -> {
-                for (int axis = 0; axis < 3; ++axis) ring(g, body, shape, s[0], axis, 0);
+                for (int axis = 0; axis < 3; ++axis) ring(g, body, shape, s[0], s[0], axis, 0);
             }
             case catalog_t.SHAPE_CAPSULE -> {
                 for (int axis = 0; axis < 3; ++axis) {
-                    ring(g, body, shape, s[0], axis, -s[1] / 2);
-                    ring(g, body, shape, s[0], axis, s[1] / 2);
+                    ring(g, body, shape, s[0], s[0], axis, -s[1] / 2);
+                    ring(g, body, shape, s[0], s[0], axis, s[1] / 2);
                 }
-                for (double[] side : new double[][] {{s[0], 0}, {-s[0], 0}, {0, s[0]}, {0, -s[0]}}) {
-                    line(g, place(body, shape, side[0], side[1], -s[1] / 2), place(body, shape, side[0], side[1], s[1] / 2));
+                sides(g, body, shape, 1);
+            }
+            case catalog_t.SHAPE_CYLINDER -> {
+                for (int side = -1; side <= 1; side += 2) ring(g, body, shape, s[0], s[0], 2, side * s[1] / 2);
+                sides(g, body, shape, 1);
+            }
+            case catalog_t.SHAPE_CONE -> {
+                ring(g, body, shape, s[0], s[0], 2, -s[1] / 2);
+                sides(g, body, shape, 0);
+            }
+            case catalog_t.SHAPE_ELLIPSOID -> {
+                for (int axis = 0; axis < 3; ++axis) {
+                    ring(g, body, shape, s[axis == 0 ? 1 : 0], s[axis == 2 ? 1 : 2], axis, 0);
                 }
             }
             case catalog_t.SHAPE_BOX -> box(g, body, shape);
@@ -157,11 +168,19 @@ final class WorldView extends JPanel {
         }
     }
 
-    /** A circle around `axis`, shifted along the shape's z. */
-    private void ring(Graphics2D g, Picture.Body body, Picture.Shape shape, double radius, int axis, double z) {
+    /** Four lines from the radius at the bottom of a round shape to `taper` times the radius at its top. */
+    private void sides(Graphics2D g, Picture.Body body, Picture.Shape shape, double taper) {
+        double r = shape.size[0], z = shape.size[1] / 2;
+        for (double[] side : new double[][] {{r, 0}, {-r, 0}, {0, r}, {0, -r}}) {
+            line(g, place(body, shape, side[0], side[1], -z), place(body, shape, taper * side[0], taper * side[1], z));
+        }
+    }
+
+    /** An ellipse around `axis` with half axes u and v along the two others, shifted along the shape's z. */
+    private void ring(Graphics2D g, Picture.Body body, Picture.Shape shape, double u, double v, int axis, double z) {
         double[] last = null;
         for (int i = 0; i <= RING; ++i) {
-            double a = radius * Math.cos(2 * Math.PI * i / RING), b = radius * Math.sin(2 * Math.PI * i / RING);
+            double a = u * Math.cos(2 * Math.PI * i / RING), b = v * Math.sin(2 * Math.PI * i / RING);
             double[] next = switch (axis) {
                 case 0 -> place(body, shape, 0, a, b + z);
                 case 1 -> place(body, shape, a, 0, b + z);

@@ -70,7 +70,8 @@ void add_spawn_command(CLI::App& app, const Globals& globals, Action& action) {
   command->add_option("--name", body.name, "Its name, new in the world")->required();
   command
       ->add_option("--size", arguments->size,
-                   "[m] sphere: radius; capsule, cylinder, cone: radius, length (of a capsule the straight part); box: "
+                   "[m] sphere: radius; capsule, cylinder, cone: radius, length (of a capsule the straight "
+                   "part); box: "
                    "three edges; ellipsoid: three half axes")
       ->required()
       ->expected(1, 3)

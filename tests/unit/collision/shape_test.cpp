@@ -14,8 +14,12 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 std::vector<Shape> solids() {
   RandomPose random(71);
-  return {Sphere{0.4}, Capsule{0.3, 0.6}, Box{Vec3(0.5, 0.3, 0.7)},
-          random_hull(random, 16, Vec3(0.6, 0.5, 0.7)), Cylinder{0.4, 0.5}, Cone{0.4, 0.5},
+  return {Sphere{0.4},
+          Capsule{0.3, 0.6},
+          Box{Vec3(0.5, 0.3, 0.7)},
+          random_hull(random, 16, Vec3(0.6, 0.5, 0.7)),
+          Cylinder{0.4, 0.5},
+          Cone{0.4, 0.5},
           Ellipsoid{Vec3(0.3, 0.5, 0.7)}};
 }
 

@@ -99,7 +99,8 @@ TEST(MassProperties, CylinderConeAndEllipsoidEqualTheirSlices) {
   cone.moments(0, 0) += shift;
   cone.moments(1, 1) += shift;
   cone.center.setZero();
-  EXPECT_LT(distance(cone, slices([&](double z) { return 0.5 * r * (1.0 - z / l); })), 5e-8);  // measured 1.3e-8
+  EXPECT_LT(distance(cone, slices([&](double z) { return 0.5 * r * (1.0 - z / l); })),
+            5e-8);  // measured 1.3e-8
   EXPECT_LT(distance(compute_inertia(Ellipsoid{Vec3(r, r, l)}, 1100.0),
                      slices([&](double z) { return r * std::sqrt(1.0 - z * z / (l * l)); })),
             5e-8);

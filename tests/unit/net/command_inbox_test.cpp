@@ -165,6 +165,7 @@ TEST_F(Inbox, RefusesBadControls) {
   c = make_control(8, control_t::VERB_SPAWN);
   c.shape_type = 0;  // a dynamic half-space
   EXPECT_EQ(outcome_of(c).status, Status::out_of_range);
+  c = make_control(11, control_t::VERB_SPAWN);
   c.shape_type = catalog_t::SHAPE_HULL;
   EXPECT_EQ(outcome_of(c).detail, "shape_type: a hull can't be spawned");
   c = make_control(9, control_t::VERB_STEP);

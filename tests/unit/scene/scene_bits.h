@@ -57,7 +57,7 @@ class SceneBits {
   void add(const Sphere& sphere) { add(sphere.radius); }
   void add(const Box& box) { add(box.half_extents); }
   template <class Round>
-    requires requires(const Round& round) { round.half_length; }
+  requires requires(const Round& round) { round.half_length; }
   void add(const Round& round) {
     add(round.radius);
     add(round.half_length);

@@ -80,7 +80,8 @@ TEST(SdfRoundTrip, RandomScenes) {
     geometry.X_LS = {random.rotation(), random.in_box(Vec3::Ones())};
     const double radius = 1.0 + random.symmetric(), half_length = 1.0 + random.symmetric();
     const std::array<Shape, 4> shapes = {Capsule{radius, half_length}, Cylinder{radius, half_length},
-                                         Cone{radius, half_length}, Ellipsoid{Vec3(radius, half_length, 0.1)}};
+                                         Cone{radius, half_length},
+                                         Ellipsoid{Vec3(radius, half_length, 0.1)}};
     geometry.shape = shapes[static_cast<std::size_t>(i) % shapes.size()];
     geometry.material = {0.5 + 0.1 * random.symmetric(), 0.5 + 0.1 * random.symmetric(),
                          1000.0 + random.symmetric()};

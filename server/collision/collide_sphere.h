@@ -11,5 +11,8 @@ Manifold collide_sphere_sphere(const Sphere& a, const Sphere& b, const Pose& X_A
 Manifold collide_sphere_capsule(const Sphere& a, const Capsule& b, const Pose& X_AB, double margin);
 Manifold collide_sphere_box(const Sphere& a, const Box& b, const Pose& X_AB, double margin);
 Manifold collide_sphere_hull(const Sphere& a, const HullPointer& b, const Pose& X_AB, double margin);
+Manifold collide_sphere_cylinder(const Sphere& a, const Cylinder& b, const Pose& X_AB, double margin);
+Manifold collide_sphere_cone(const Sphere& a, const Cone& b, const Pose& X_AB, double margin);
+Manifold collide_sphere_ellipsoid(const Sphere& a, const Ellipsoid& b, const Pose& X_AB, double margin);
 
 }  // namespace tumble

@@ -7,6 +7,7 @@
 
 #include "collision/collide_box_box.h"
 #include "collision/collide_capsule.h"
+#include "collision/collide_curved.h"
 #include "collision/collide_half_space.h"
 #include "collision/collide_polytope.h"
 #include "collision/collide_sphere.h"
@@ -51,16 +52,21 @@ template <auto function>
 constexpr PairFunction after_gjk = {nullptr, by<function>.exact, true};
 
 constexpr PairFunction none;
+constexpr PairFunction curved{nullptr, collide_curved};
+constexpr PairFunction on_ground{collide_half_space_curved, nullptr};
 
 // Rows: shape A, columns: shape B, both in the order of Shape's alternatives. Half-spaces never meet: they don't move.
 // clang-format off
 constexpr std::array<std::array<PairFunction, kShapeTypes>, kShapeTypes> kMatrix = {{
-  //            half-space  sphere                          capsule                          box                          hull
-  /*half-space*/ {none,     by<collide_half_space_sphere>,  by<collide_half_space_capsule>,  by<collide_half_space_box>,  by<collide_half_space_hull>},
-  /*sphere    */ {none,     by<collide_sphere_sphere>,      by<collide_sphere_capsule>,      by<collide_sphere_box>,      by<collide_sphere_hull>},
-  /*capsule   */ {none,     none,                           by<collide_capsule_capsule>,     by<collide_capsule_box>,     by<collide_capsule_hull>},
-  /*box       */ {none,     none,                           none,                            by<collide_box_box>,         after_gjk<collide_box_hull>},
-  /*hull      */ {none,     none,                           none,                            none,                        after_gjk<collide_hull_hull>},
+  //            half-space  sphere                          capsule                          box                          hull                          cylinder                      cone                      ellipsoid
+  /*half-space*/ {none,     by<collide_half_space_sphere>,  by<collide_half_space_capsule>,  by<collide_half_space_box>,  by<collide_half_space_hull>,  on_ground,                    on_ground,                on_ground},
+  /*sphere    */ {none,     by<collide_sphere_sphere>,      by<collide_sphere_capsule>,      by<collide_sphere_box>,      by<collide_sphere_hull>,      by<collide_sphere_cylinder>,  by<collide_sphere_cone>,  by<collide_sphere_ellipsoid>},
+  /*capsule   */ {none,     none,                           by<collide_capsule_capsule>,     by<collide_capsule_box>,     by<collide_capsule_hull>,     curved,                       curved,                   curved},
+  /*box       */ {none,     none,                           none,                            by<collide_box_box>,         after_gjk<collide_box_hull>,  curved,                       curved,                   curved},
+  /*hull      */ {none,     none,                           none,                            none,                        after_gjk<collide_hull_hull>, curved,                       curved,                   curved},
+  /*cylinder  */ {none,     none,                           none,                            none,                        none,                         curved,                       curved,                   curved},
+  /*cone      */ {none,     none,                           none,                            none,                        none,                         none,                         curved,                   curved},
+  /*ellipsoid */ {none,     none,                           none,                            none,                        none,                         none,                         none,                     curved},
 }};
 // clang-format on
 

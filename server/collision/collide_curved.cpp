@@ -1,0 +1,57 @@
+// See collide_curved.h.
+#include "collision/collide_curved.h"
+
+#include "collision/manifold_builder.h"
+#include "collision/patch.h"
+#include "collision/segment.h"
+#include "collision/separation_search.h"
+#include "math/rotation.h"
+
+namespace tumble {
+namespace {
+
+/// A face this nearly along the best direction (cosine), and within this of its separation (of the shapes' size), is the
+/// best direction: it gives the normal exactly.
+constexpr double kAlong = 1.0 - 1e-8, kAsGood = 1e-11;
+
+double separation_along(const ConvexPieces& a, const ConvexPieces& b, const Vec3& n) {
+  return n.dot(b.furthest(-n).p_A - a.furthest(n).p_A) - a.rounding() - b.rounding();
+}
+
+/// Takes the normal of a face of A or B if it does.
+void snap(const ConvexPieces& a, const ConvexPieces& b, const Vec3& face_normal, double size, Separation& best) {
+  if (face_normal.dot(best.normal_A) < kAlong) return;
+  const double separation = separation_along(a, b, face_normal);
+  if (separation < best.separation - kAsGood * size) return;
+  best.normal_A = face_normal;
+  best.separation = separation;
+}
+
+}  // namespace
+
+Manifold collide_curved(const Shape& shape_a, const Shape& shape_b, const Pose& X_AB, double margin,
+                        PairCache& cache) {
+  const ConvexPieces a(shape_a, Mat3::Identity(), Vec3::Zero()), b(shape_b, rotation_matrix(X_AB.q), X_AB.p);
+  const Vec3 guess = direction_or(cache.axis_A, direction_or(X_AB.p, Vec3::UnitZ()));
+  Separation best = find_separation(a, b, guess, margin);
+  cache.axis_A = best.normal_A;
+  cache.gap = best.separation;
+  cache.slack = 0.0;
+  if (best.separation > margin) return {};
+  const Patch patch_a = patch_towards(a, best.normal_A), patch_b = patch_towards(b, -best.normal_A);
+  const double size = bounding_radius(shape_a) + bounding_radius(shape_b);
+  if (patch_a.is_flat()) snap(a, b, patch_a.normal, size, best);
+  if (patch_b.is_flat()) snap(a, b, -patch_b.normal, size, best);
+  const PatchContact contact{best.normal_A, best.separation, best.p_A, best.p_B, a.rounding(), b.rounding()};
+  return make_patch_manifold(patch_a, patch_b, contact, margin);
+}
+
+Manifold collide_half_space_curved(const Shape&, const Shape& shape_b, const Pose& X_AB, double margin) {
+  const ConvexPieces b(shape_b, rotation_matrix(X_AB.q), X_AB.p);
+  const Vec3 up = Vec3::UnitZ();
+  const Vec3 lowest = b.furthest(-up).p_A;
+  if (lowest.z() > margin) return {};
+  return make_ground_manifold(patch_towards(b, -up), lowest, margin);
+}
+
+}  // namespace tumble

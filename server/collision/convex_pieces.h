@@ -1,0 +1,52 @@
+// One view of every convex shape as a few smooth pieces, so that searches over directions are written once. A piece is a
+// vertex, a rim, an ellipsoid: for each direction n it has one furthest point, which moves with n by its matrix of
+// curvature radii. Spheres and capsules are a point and a segment, rounded. All in A's frame, lengths in [m].
+#pragma once
+
+#include "collision/polytope.h"
+#include "collision/shape.h"
+
+namespace tumble {
+
+/// Curvature radii u W u, u W v, v W v [m].
+struct Curvature {
+  double uu, uv, vv;
+  Curvature operator+(const Curvature& other) const { return {uu + other.uu, uv + other.uv, vv + other.vv}; }
+  Curvature operator*(double s) const { return {uu * s, uv * s, vv * s}; }
+  /// Of W - t.
+  bool is_positive(double t) const { return uu + vv > 2.0 * t && (uu - t) * (vv - t) > uv * uv; }
+};
+
+class ConvexPieces {
+ public:
+  /// Not for half-spaces. Keeps a reference to the shape.
+  ConvexPieces(const Shape& shape, const Mat3& R_AS, const Vec3& p_AS);
+
+  struct Point {
+    Vec3 p_A;
+    std::uint32_t piece;
+  };
+  /// Furthest point of the core along n (any length > 0).
+  Point furthest(const Vec3& n_A) const;
+  /// The same of one piece alone; n unit.
+  Vec3 point(std::uint32_t piece, const Vec3& n_A) const;
+  /// The matrix W = d point / d n in two directions u, v across n: symmetric, positive semi-definite, 0 for vertices,
+  /// infinite for a rim that is seen along its axis.
+  Curvature curvature(std::uint32_t piece, const Vec3& n_A, const Vec3& u_A, const Vec3& v_A) const;
+  /// What lies around the core on all sides.
+  double rounding() const { return rounding_; }
+  /// Is its lowest, highest face across z a disc?
+  bool has_cap_below() const { return has_cap_above() || std::holds_alternative<Cone>(shape_); }
+  bool has_cap_above() const { return std::holds_alternative<Cylinder>(shape_); }
+  const Mat3& R() const { return R_; }
+  const Vec3& p() const { return p_; }
+  const Shape& shape() const { return shape_; }
+
+ private:
+  const Shape& shape_;
+  Mat3 R_;
+  Vec3 p_;
+  double rounding_;
+};
+
+}  // namespace tumble

@@ -1,0 +1,348 @@
+// See separation_search.h. h: reach of A - B along n, to be made least; k: its furthest point; t = n . k.
+#include "collision/separation_search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "collision/segment.h"
+
+namespace tumble {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+/// Faces of the difference closer to the best depth than this, of the shapes' size, hide nothing worth finding.
+constexpr double kTolerance = 1e-11;
+/// Furthest points asked before a search ends with what it has: only where a whole circle or sphere of directions is
+/// equally good, as between coaxial shapes, is the best never proven best. Others need 10 to 60.
+constexpr int kMaxRounds = 120;
+/// Of one reach, of the shapes' size.
+constexpr double kRounding = 1e-14;
+constexpr int kNewtonSteps = 12;
+constexpr double kLongestStep = 0.3;  // [rad]
+/// Newton's method squares its error: a step this short is the last [rad].
+constexpr double kConverged = 1e-8;
+/// cos of 0.35 rad: how far around an optimum a positive curvature at both ends says there is none in between.
+constexpr double kBasin = 0.94;
+/// cos of 1e-5 rad: two searches that end so near each other ended at the same optimum.
+constexpr double kSameDirection = 1.0 - 5e-11;
+
+struct Reach {
+  Vec3 n, a, b;
+  PiecePair pieces;
+  Vec3 k() const { return a - b; }
+  DifferenceHull::Corner corner() const { return {a - b, a, pieces}; }
+  double h() const { return n.dot(a - b); }
+};
+
+/// A direction that could be the best, with the pieces believed to be furthest there.
+struct Candidate {
+  Vec3 n = Vec3::UnitZ();
+  double h = kInfinity;
+  int count = 0;
+  std::array<PiecePair, 3> pieces;
+  bool optimal = false;  ///< Newton's method ended here and no other piece reaches further.
+
+  void add(PiecePair pair) {
+    const auto end = pieces.begin() + count;
+    if (std::find(pieces.begin(), end, pair) == end && count < 3) pieces[static_cast<std::size_t>(count++)] = pair;
+  }
+  bool holds(PiecePair pair) const {
+    const auto end = pieces.begin() + count;
+    return std::find(pieces.begin(), end, pair) != end;
+  }
+};
+
+class Search {
+ public:
+  Search(const ConvexPieces& a, const ConvexPieces& b, double enough)
+      : a_(a),
+        b_(b),
+        rounding_(a.rounding() + b.rounding()),
+        enough_(enough),
+        size_(bounding_radius(a.shape()) + bounding_radius(b.shape())),
+        hull_(size_) {}
+
+  Separation run(const Vec3& guess) {
+    reach(guess);
+    if (!beyond()) try_caps(a_, 1.0);
+    if (!beyond()) try_caps(b_, -1.0);
+    if (!beyond() && start(guess)) expand();
+    return finish();
+  }
+
+ private:
+  /// The furthest points along n; remembers the direction if it is the best so far.
+  Reach reach(const Vec3& n) {
+    ++evaluations_;
+    const ConvexPieces::Point a = a_.furthest(n), b = b_.furthest(-n);
+    const Reach reach{n, a.p_A, b.p_A, {a.piece, b.piece}};
+    if (reach.h() < best_.h - (best_.optimal ? kRounding * size_ : 0.0)) {
+      best_ = {n, reach.h(), 0, {}, false};
+      best_.add(reach.pieces);
+    }
+    return reach;
+  }
+  bool beyond() const { return -best_.h - rounding_ > enough_; }
+  /// Along a cap one piece, the rim, reaches equally far all around: no curvature tells that an optimum may be there.
+  void try_caps(const ConvexPieces& body, double side) {
+    if (body.has_cap_below()) reach(-side * body.R().col(2));
+    if (body.has_cap_above()) reach(side * body.R().col(2));
+  }
+
+  Vec3 point(PiecePair pair, const Vec3& n) const { return a_.point(pair.a, n) - b_.point(pair.b, -n); }
+  Curvature curvature(PiecePair pair, const Vec3& n, const Vec3& u, const Vec3& v) const {
+    return a_.curvature(pair.a, n, u, v) + b_.curvature(pair.b, -n, u, v);
+  }
+
+  bool start(const Vec3& guess);
+  void expand();
+  bool explains(const DifferenceHull::Face& face, const Reach& reach) const;
+  bool converge(Candidate& candidate) const;
+  enum class Ending { nowhere, same_optimum, better_optimum };
+  Ending polish(Candidate candidate);
+  void grow_to_best();
+  bool step_on_surface(Candidate& c) const;
+  struct Ridge {
+    Vec3 n, u;
+    double slope, second;
+  };
+  std::optional<Ridge> ridge_at(const Candidate& c, const Vec3& n_near) const;
+  bool step_on_ridge(Candidate& c) const;
+  bool step_to_face(Candidate& c) const;
+  std::array<double, 3> weights(const Candidate& c) const;
+  void find_points(Separation& result) const;
+  Separation finish();
+
+  const ConvexPieces &a_, &b_;
+  double rounding_, enough_, size_;
+  DifferenceHull hull_;
+  Candidate best_;
+  std::optional<DifferenceHull::Face> nearest_;  ///< To the origin, while that is outside.
+  double lead_ = 0.0;
+  int evaluations_ = 0;
+};
+
+/// A tetrahedron as wide as supports along a few perpendicular directions make it.
+bool Search::start(const Vec3& guess) {
+  std::array<DifferenceHull::Corner, 4> corners;
+  corners[0] = reach(guess).corner();
+  corners[1] = reach(-guess).corner();
+  const Vec3 origin = corners[0].k, along = corners[1].k - origin;
+  const auto furthest_across = [&](const Vec3& across) {
+    const Reach ahead = reach(across), back = reach(-across);
+    return (across.dot(ahead.k() - origin) >= across.dot(origin - back.k()) ? ahead : back).corner();
+  };
+  corners[2] = furthest_across(perpendicular_to(along));
+  corners[3] = furthest_across(direction_or(along.cross(corners[2].k - origin), Vec3::UnitZ()));
+  return hull_.start(corners);
+}
+
+/// Minimum of a smooth piece on the sphere of directions: gradient k - t n, Hessian W - t across n.
+bool Search::step_on_surface(Candidate& c) const {
+  const Vec3 k = point(c.pieces[0], c.n);
+  const double t = c.n.dot(k);
+  const Vec3 u = perpendicular_to(c.n), v = c.n.cross(u);
+  const Curvature W = curvature(c.pieces[0], c.n, u, v);
+  if (!W.is_positive(t)) return false;
+  const double uu = W.uu - t, vv = W.vv - t, uv = W.uv, determinant = uu * vv - uv * uv;
+  const double gu = u.dot(k), gv = v.dot(k);
+  const double du = -(vv * gu - uv * gv) / determinant, dv = -(uu * gv - uv * gu) / determinant;
+  const double length = std::sqrt(du * du + dv * dv);
+  const double scale = length > kLongestStep ? kLongestStep / length : 1.0;
+  c.n = (c.n + scale * (du * u + dv * v)).normalized();
+  return true;
+}
+
+/// Two pieces reach equally far on a curve across e = k1 - k0; along it, u, the reach of the mixture with the weights of
+/// the edge's point nearest to the origin has the derivatives u . k and u W u - t.
+std::optional<Search::Ridge> Search::ridge_at(const Candidate& c, const Vec3& n_near) const {
+  const Vec3 k0 = point(c.pieces[0], n_near), e = point(c.pieces[1], n_near) - k0;
+  const double ee = e.squaredNorm();
+  if (!(ee > 0.0)) return std::nullopt;
+  const Vec3 level = n_near - e * (e.dot(n_near) / ee);
+  const double length = level.norm();
+  if (!(length > 0.1)) return std::nullopt;
+  Ridge ridge;
+  ridge.n = level / length;
+  ridge.u = ridge.n.cross(e) / std::sqrt(ee);
+  const double weight = std::clamp(-k0.dot(e) / ee, 0.0, 1.0);
+  const double uu = (1.0 - weight) * curvature(c.pieces[0], n_near, ridge.u, ridge.u).uu +
+                    weight * curvature(c.pieces[1], n_near, ridge.u, ridge.u).uu;
+  ridge.slope = ridge.u.dot(k0);
+  ridge.second = uu - ridge.n.dot(k0);
+  return ridge;
+}
+
+bool Search::step_on_ridge(Candidate& c) const {
+  const std::optional<Ridge> ridge = ridge_at(c, c.n);
+  if (!ridge || !(ridge->second > 0.0)) return false;
+  const double step = std::clamp(-ridge->slope / ridge->second, -kLongestStep, kLongestStep);
+  c.n = (ridge->n + step * ridge->u).normalized();
+  return true;
+}
+
+/// Three pieces reach equally far along the normal of the plane through their points.
+bool Search::step_to_face(Candidate& c) const {
+  const Vec3 k0 = point(c.pieces[0], c.n);
+  const Vec3 e1 = point(c.pieces[1], c.n) - k0, e2 = point(c.pieces[2], c.n) - k0;
+  const Vec3 cross = e1.cross(e2);
+  const double length = cross.norm();
+  if (!(length > 1e-12 * e1.norm() * e2.norm())) return false;
+  c.n = cross.dot(c.n) < 0.0 ? Vec3(-cross / length) : Vec3(cross / length);
+  return true;
+}
+
+/// Of the furthest points of its pieces, for the point of their plane that lies behind the origin along n.
+std::array<double, 3> Search::weights(const Candidate& c) const {
+  if (c.count == 1) return {1.0, 0.0, 0.0};
+  const Vec3 k0 = point(c.pieces[0], c.n), e1 = point(c.pieces[1], c.n) - k0;
+  if (c.count == 2) {
+    const double w1 = -k0.dot(e1) / e1.squaredNorm();
+    return {1.0 - w1, w1, 0.0};
+  }
+  const Vec3 e2 = point(c.pieces[2], c.n) - k0, foot = c.n.dot(k0) * c.n - k0;
+  const double all = c.n.dot(e1.cross(e2));
+  const double w1 = c.n.dot(foot.cross(e2)) / all, w2 = c.n.dot(e1.cross(foot)) / all;
+  return {1.0 - w1 - w2, w1, w2};
+}
+
+/// Newton's method on the candidate's pieces; false if it leads nowhere.
+bool Search::converge(Candidate& candidate) const {
+  for (int i = 0; i < kNewtonSteps; ++i) {
+    const Vec3 before = candidate.n;
+    const bool good = candidate.count == 1   ? step_on_surface(candidate)
+                      : candidate.count == 2 ? step_on_ridge(candidate)
+                                             : step_to_face(candidate);
+    if (!good || !candidate.n.allFinite()) return false;
+    if ((candidate.n - before).squaredNorm() < kConverged * kConverged) return true;
+  }
+  return false;
+}
+
+/// The optimum near the candidate: pieces that don't hold it are dropped. Remembered if it is better than the best.
+Search::Ending Search::polish(Candidate candidate) {
+  while (converge(candidate)) {
+    const Candidate before = best_;
+    const Reach reached = reach(candidate.n);
+    const double t = candidate.n.dot(point(candidate.pieces[0], candidate.n));
+    if (reached.h() > t + kRounding * size_) break;  // another piece reaches further
+    const std::array<double, 3> w = weights(candidate);
+    const auto least = static_cast<std::size_t>(std::min_element(w.begin(), w.begin() + candidate.count) - w.begin());
+    if (w[least] < 0.0) {
+      candidate.pieces[least] = candidate.pieces[static_cast<std::size_t>(--candidate.count)];
+      continue;
+    }
+    if (before.optimal && candidate.n.dot(before.n) > kSameDirection) {
+      best_ = before;
+      return Ending::same_optimum;
+    }
+    if (reached.h() > before.h) break;
+    best_ = candidate;
+    best_.h = reached.h();
+    best_.optimal = true;
+    return Ending::better_optimum;
+  }
+  return Ending::nowhere;
+}
+
+void Search::grow_to_best() {
+  for (int i = 0; i < best_.count; ++i) {
+    const PiecePair pair = best_.pieces[static_cast<std::size_t>(i)];
+    hull_.grow({point(pair, best_.n), a_.point(pair.a, best_.n), pair});
+  }
+}
+
+/// True if no better direction hides behind the face, since it lies near the best one, the same pieces are furthest, and
+/// curvature leaves room for one minimum only, or for none.
+bool Search::explains(const DifferenceHull::Face& face, const Reach& reach) const {
+  if (!best_.optimal || best_.count > 2 || face.outside || reach.n.dot(best_.n) < kBasin || !best_.holds(reach.pieces)) return false;
+  for (const std::uint16_t corner : face.corners) {
+    if (!best_.holds(hull_.corner(corner).pieces)) return false;
+  }
+  const bool one_piece = std::all_of(face.corners.begin(), face.corners.end(), [&](std::uint16_t corner) {
+    return hull_.corner(corner).pieces == reach.pieces;
+  });
+  if (!one_piece) {
+    const std::optional<Ridge> ridge = ridge_at(best_, reach.n);
+    return ridge && ridge->second > 0.0;
+  }
+  // Beside a ridge the piece falls towards it: it does at the best direction, and where it is convex it goes on to.
+  if (best_.count == 2) return true;
+  const Vec3 u = perpendicular_to(reach.n), v = reach.n.cross(u);
+  return curvature(reach.pieces, reach.n, u, v).is_positive(reach.h());
+}
+
+void Search::expand() {
+  const double tolerance = kTolerance * size_;
+  for (int round = 0; round < kMaxRounds && !beyond() && !hull_.full(); ++round) {
+    DifferenceHull::Face* face = hull_.least();
+    if (face == nullptr) {
+      lead_ = kInfinity;
+      return;
+    }
+    lead_ = face->outside ? 0.0 : face->bound - best_.h;
+    if (!face->outside && lead_ >= -tolerance) return;
+    nearest_.reset();
+    if (face->outside) nearest_ = *face;
+    Candidate candidate;
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (face->weights[i] > 0.0) candidate.add(hull_.corner(face->corners[i]).pieces);
+    }
+    const Reach reached = reach(candidate.n = face->direction);
+    if (face->outside && best_.h <= face->bound + tolerance) return;  // no direction separates more
+    if (explains(*face, reached)) {
+      face->closed = true;
+      continue;
+    }
+    const bool settled = candidate.holds(reached.pieces) && reached.h() > face->bound + tolerance;
+    const bool near = candidate.n.dot(best_.n) > kBasin;
+    const Ending ending = settled ? polish(candidate) : Ending::nowhere;
+    if (ending == Ending::same_optimum && near && !face->outside) {
+      face->closed = true;
+      continue;
+    }
+    if (!hull_.grow(reached.corner())) face->closed = true;
+    if (ending == Ending::better_optimum) grow_to_best();
+  }
+}
+
+/// The deepest points, as the mixture of those that the origin lies behind.
+void Search::find_points(Separation& result) const {
+  result.p_A = result.p_B = Vec3::Zero();
+  if (best_.optimal) {
+    const std::array<double, 3> w = weights(best_);
+    for (std::size_t i = 0; i < static_cast<std::size_t>(best_.count); ++i) {
+      result.p_A += w[i] * a_.point(best_.pieces[i].a, best_.n);
+      result.p_B += w[i] * b_.point(best_.pieces[i].b, -best_.n);
+    }
+    return;
+  }
+  const DifferenceHull::Face face = nearest_ ? *nearest_ : hull_.pierced_by(best_.n);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const DifferenceHull::Corner& corner = hull_.corner(face.corners[i]);
+    result.p_A += face.weights[i] * corner.p_A;
+    result.p_B += face.weights[i] * (corner.p_A - corner.k);
+  }
+}
+
+Separation Search::finish() {
+  Separation result;
+  result.normal_A = best_.n;
+  result.separation = -best_.h - rounding_;
+  result.count = best_.count;
+  result.pieces = best_.pieces;
+  result.lead = lead_;
+  if (!beyond()) find_points(result);
+  result.evaluations = evaluations_;
+  return result;
+}
+
+}  // namespace
+
+Separation find_separation(const ConvexPieces& a, const ConvexPieces& b, const Vec3& guess, double enough) {
+  return Search(a, b, enough).run(guess);
+}
+
+}  // namespace tumble

@@ -19,7 +19,8 @@ double separation_along(const ConvexPieces& a, const ConvexPieces& b, const Vec3
 }
 
 /// Takes the normal of a face of A or B if it does.
-void snap(const ConvexPieces& a, const ConvexPieces& b, const Vec3& face_normal, double size, Separation& best) {
+void snap(const ConvexPieces& a, const ConvexPieces& b, const Vec3& face_normal, double size,
+          Separation& best) {
   if (face_normal.dot(best.normal_A) < kAlong) return;
   const double separation = separation_along(a, b, face_normal);
   if (separation < best.separation - kAsGood * size) return;
@@ -32,8 +33,8 @@ void snap(const ConvexPieces& a, const ConvexPieces& b, const Vec3& face_normal,
 Manifold collide_curved(const Shape& shape_a, const Shape& shape_b, const Pose& X_AB, double margin,
                         PairCache& cache) {
   const ConvexPieces a(shape_a, Mat3::Identity(), Vec3::Zero()), b(shape_b, rotation_matrix(X_AB.q), X_AB.p);
-  const Vec3 guess = direction_or(cache.axis_A, direction_or(X_AB.p, Vec3::UnitZ()));
-  Separation best = find_separation(a, b, guess, margin);
+  // From the line of centres and not from the last answer, so that a contact is a function of the pose to the last bit.
+  Separation best = find_separation(a, b, direction_or(X_AB.p, Vec3::UnitZ()), margin);
   cache.axis_A = best.normal_A;
   cache.gap = best.separation;
   cache.slack = 0.0;

@@ -63,7 +63,8 @@ Nearest nearest_on_cone(const Cone& c, const Vec3& p_S) {
   if (along >= 0.0 && along <= length) return {above_side, m.lift(nr, nz)};
   const double out = along > length ? m.rho : from_rim, up = along > length ? m.z - c.half_length : over_base;
   const double distance = std::sqrt(out * out + up * up);
-  return distance > 0.0 ? Nearest{distance, m.lift(out / distance, up / distance)} : Nearest{0.0, m.lift(nr, nz)};
+  return distance > 0.0 ? Nearest{distance, m.lift(out / distance, up / distance)}
+                        : Nearest{0.0, m.lift(nr, nz)};
 }
 
 /// The nearest point is x_i = a_i^2 p_i / (t + a_i^2) for the largest root t of sum (x_i / a_i)^2 = 1, and t > -min a^2
@@ -107,8 +108,8 @@ Nearest nearest_on_ellipsoid(const Ellipsoid& e, const Vec3& p_S) {
 }
 
 template <typename Curved>
-Manifold from_nearest(const Sphere& a, const Curved& b, Nearest (*nearest)(const Curved&, const Vec3&), const Pose& X_AB,
-                      double margin) {
+Manifold from_nearest(const Sphere& a, const Curved& b, Nearest (*nearest)(const Curved&, const Vec3&),
+                      const Pose& X_AB, double margin) {
   const Nearest found = nearest(b, -(X_AB.q.conjugate() * X_AB.p));
   return from_centre(a, X_AB.q * -found.outward_S, found.distance, margin, 0);
 }

@@ -38,7 +38,8 @@ struct PieceOf {
     return 2.0 * c.half_length * d.z() >= c.radius * across ? kHigh : kLow;
   }
   std::uint32_t operator()(const Box&) const {
-    return (std::signbit(d.x()) ? 0u : 1u) | (std::signbit(d.y()) ? 0u : 2u) | (std::signbit(d.z()) ? 0u : 4u);
+    return (std::signbit(d.x()) ? 0u : 1u) | (std::signbit(d.y()) ? 0u : 2u) |
+           (std::signbit(d.z()) ? 0u : 4u);
   }
   std::uint32_t operator()(const HullPointer& h) const {
     return descend(view_of(*h), -d, 0, -std::numeric_limits<double>::infinity()).vertex;
@@ -82,7 +83,8 @@ struct CurvatureOf {
   }
   /// Second derivative of |a d|: (D - p p^T) / |a d| with D = diag(a^2) and the furthest point p.
   Curvature operator()(const Ellipsoid& e) const {
-    const Vec3 ad = e.half_axes.cwiseProduct(d), au = e.half_axes.cwiseProduct(u), av = e.half_axes.cwiseProduct(v);
+    const Vec3 ad = e.half_axes.cwiseProduct(d), au = e.half_axes.cwiseProduct(u),
+               av = e.half_axes.cwiseProduct(v);
     const double length = ad.norm(), pu = ad.dot(au) / length, pv = ad.dot(av) / length;
     return Curvature{au.dot(au) - pu * pu, au.dot(av) - pu * pv, av.dot(av) - pv * pv} * (1.0 / length);
   }
@@ -110,7 +112,8 @@ Vec3 ConvexPieces::point(std::uint32_t piece, const Vec3& n_A) const {
   return R_ * std::visit(PointOf{d, piece}, shape_) + p_;
 }
 
-Curvature ConvexPieces::curvature(std::uint32_t piece, const Vec3& n_A, const Vec3& u_A, const Vec3& v_A) const {
+Curvature ConvexPieces::curvature(std::uint32_t piece, const Vec3& n_A, const Vec3& u_A,
+                                  const Vec3& v_A) const {
   const Mat3 R_SA = R_.transpose();
   const Vec3 d = R_SA * n_A, u = R_SA * u_A, v = R_SA * v_A;
   return std::visit(CurvatureOf{d, u, v, piece}, shape_);

@@ -31,7 +31,7 @@ class DifferenceHull {
     Vec3 normal;                           ///< Unit, outward.
     double offset;                         ///< [m]
     Vec3 direction;                        ///< Where to look for the next point: unit.
-    double bound;                          ///< The difference reaches at least this far along `direction` [m].
+    double bound;  ///< The difference reaches at least this far along `direction` [m].
   };
 
   /// `size` of the difference [m], for the rounding of its points.

@@ -52,8 +52,8 @@ template <auto function>
 constexpr PairFunction after_gjk = {nullptr, by<function>.exact, true};
 
 constexpr PairFunction none;
-constexpr PairFunction curved{nullptr, collide_curved};
-constexpr PairFunction on_ground{collide_half_space_curved, nullptr};
+constexpr PairFunction curved{nullptr, collide_curved, true};
+constexpr PairFunction on_ground{collide_half_space_curved, nullptr, false};
 
 // Rows: shape A, columns: shape B, both in the order of Shape's alternatives. Half-spaces never meet: they don't move.
 // clang-format off

@@ -30,6 +30,15 @@ int compare(const Capsule& a, const Capsule& b) {
 int compare(const Box& a, const Box& b) {
   return compare_vectors(a.half_extents, b.half_extents);
 }
+int compare(const Cylinder& a, const Cylinder& b) {
+  return a.radius != b.radius ? sign_of(a.radius - b.radius) : sign_of(a.half_length - b.half_length);
+}
+int compare(const Cone& a, const Cone& b) {
+  return a.radius != b.radius ? sign_of(a.radius - b.radius) : sign_of(a.half_length - b.half_length);
+}
+int compare(const Ellipsoid& a, const Ellipsoid& b) {
+  return compare_vectors(a.half_axes, b.half_axes);
+}
 int compare(const HullPointer& a, const HullPointer& b) {
   if (a == b) return 0;
   if (a->radius != b->radius) return sign_of(a->radius - b->radius);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "collision/feature_name.h"
 #include "collision/manifold_builder.h"
 #include "collision/segment.h"
 
@@ -19,8 +20,14 @@ constexpr double kSame = 1e-6;
 constexpr double kOutside = 1e-6;
 /// The turn between rim points.
 constexpr double kEighth = 0.70710678118654752;
-constexpr std::array<std::array<double, 2>, Patch::kRimPoints> kCompass = {
-    {{1, 0}, {kEighth, kEighth}, {0, 1}, {-kEighth, kEighth}, {-1, 0}, {-kEighth, -kEighth}, {0, -1}, {kEighth, -kEighth}}};
+constexpr std::array<std::array<double, 2>, Patch::kRimPoints> kCompass = {{{1, 0},
+                                                                            {kEighth, kEighth},
+                                                                            {0, 1},
+                                                                            {-kEighth, kEighth},
+                                                                            {-1, 0},
+                                                                            {-kEighth, -kEighth},
+                                                                            {0, -1},
+                                                                            {kEighth, -kEighth}}};
 
 /// Builds the patch in the shape's frame S; d is the direction there.
 struct PatchOf {
@@ -103,7 +110,8 @@ struct PatchOf {
     const double z = std::copysign(c.half_length, d.z());
     const std::uint32_t cap = z < 0.0 ? 16 : 32;
     if (std::abs(d.z()) > kAhead) return disc(c.radius, z, cap);
-    if (std::abs(d.z()) < kAside) return along(on_rim(c.radius, -c.half_length), on_rim(c.radius, c.half_length), 0);
+    if (std::abs(d.z()) < kAside)
+      return along(on_rim(c.radius, -c.half_length), on_rim(c.radius, c.half_length), 0);
     return at_point(on_rim(c.radius, z), z < 0.0 ? 0 : 1);
   }
   Patch operator()(const Cone& c) const {
@@ -142,7 +150,9 @@ std::size_t next_corner(const Patch& patch, std::size_t i) {
   return i + 1 == static_cast<std::size_t>(patch.count) ? 0 : i + 1;
 }
 std::size_t num_edges(const Patch& patch) {
-  return patch.kind == Patch::Kind::line ? 1 : patch.kind == Patch::Kind::polygon ? static_cast<std::size_t>(patch.count) : 0;
+  return patch.kind == Patch::Kind::line      ? 1
+         : patch.kind == Patch::Kind::polygon ? static_cast<std::size_t>(patch.count)
+                                              : 0;
 }
 
 /// Is p, a point of the patch's plane, inside its outline?
@@ -202,7 +212,8 @@ void meet_lines(const Patch& a, const Patch& b, Meeting& meeting) {
   const double aa = along_a.squaredNorm(), ab = along_a.dot(along_b);
   if (along_a.cross(along_b).squaredNorm() > kSideBySide * aa * along_b.squaredNorm()) return;
   const double from = along_a.dot(b.corners[0] - a.corners[0]) / aa, rise = ab / aa;
-  const double low = std::max(0.0, std::min(from, from + rise)), high = std::min(1.0, std::max(from, from + rise));
+  const double low = std::max(0.0, std::min(from, from + rise)),
+               high = std::min(1.0, std::max(from, from + rise));
   if (low > high) return;
   for (const double s : {low, high}) {
     meeting.add(a.corners[0] + s * along_a, b.corners[0] + ((s - from) / rise) * along_b,
@@ -221,7 +232,8 @@ void meet(const Patch& a, const Patch& b, Meeting& meeting) {
       const Vec3 &tail = a.corners[i], &head = a.corners[next_corner(a, i)];
       const Vec3 tail_b = drop(b, tail, n), head_b = drop(b, head, n);
       visit_crossings(b, tail_b, head_b, [&](double s, std::uint32_t name) {
-        meeting.add(tail + s * (head - tail), tail_b + s * (head_b - tail_b), mix_features(a.names[i], name, 3));
+        meeting.add(tail + s * (head - tail), tail_b + s * (head_b - tail_b),
+                    mix_features(a.names[i], name, 3));
       });
     }
   }
@@ -235,7 +247,8 @@ void meet(const Patch& a, const Patch& b, Meeting& meeting) {
       const Vec3 &tail = b.corners[i], &head = b.corners[next_corner(b, i)];
       const Vec3 tail_a = drop(a, tail, n), head_a = drop(a, head, n);
       visit_crossings(a, tail_a, head_a, [&](double s, std::uint32_t name) {
-        meeting.add(tail_a + s * (head_a - tail_a), tail + s * (head - tail), mix_features(b.names[i], name, 4));
+        meeting.add(tail_a + s * (head_a - tail_a), tail + s * (head - tail),
+                    mix_features(b.names[i], name, 4));
       });
     }
   }
@@ -262,9 +275,8 @@ Manifold collect(const PatchContact& contact, double width, double margin, AddPo
   // A corner that is as deep within rounding is as deep.
   Manifold manifold = builder.finish();
   const auto end = manifold.points.begin() + manifold.count;
-  const auto lowest = std::min_element(manifold.points.begin(), end, [](const auto& p, const auto& q) {
-    return p.separation < q.separation;
-  });
+  const auto lowest = std::min_element(
+      manifold.points.begin(), end, [](const auto& p, const auto& q) { return p.separation < q.separation; });
   if (lowest != end) lowest->separation = contact.separation;
   return manifold;
 }

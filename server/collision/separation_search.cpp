@@ -46,7 +46,8 @@ struct Candidate {
 
   void add(PiecePair pair) {
     const auto end = pieces.begin() + count;
-    if (std::find(pieces.begin(), end, pair) == end && count < 3) pieces[static_cast<std::size_t>(count++)] = pair;
+    if (std::find(pieces.begin(), end, pair) == end && count < 3)
+      pieces[static_cast<std::size_t>(count++)] = pair;
   }
   bool holds(PiecePair pair) const {
     const auto end = pieces.begin() + count;
@@ -229,7 +230,8 @@ Search::Ending Search::polish(Candidate candidate) {
     const double t = candidate.n.dot(point(candidate.pieces[0], candidate.n));
     if (reached.h() > t + kRounding * size_) break;  // another piece reaches further
     const std::array<double, 3> w = weights(candidate);
-    const auto least = static_cast<std::size_t>(std::min_element(w.begin(), w.begin() + candidate.count) - w.begin());
+    const auto least =
+        static_cast<std::size_t>(std::min_element(w.begin(), w.begin() + candidate.count) - w.begin());
     if (w[least] < 0.0) {
       candidate.pieces[least] = candidate.pieces[static_cast<std::size_t>(--candidate.count)];
       continue;
@@ -257,7 +259,9 @@ void Search::grow_to_best() {
 /// True if no better direction hides behind the face, since it lies near the best one, the same pieces are furthest, and
 /// curvature leaves room for one minimum only, or for none.
 bool Search::explains(const DifferenceHull::Face& face, const Reach& reach) const {
-  if (!best_.optimal || best_.count > 2 || face.outside || reach.n.dot(best_.n) < kBasin || !best_.holds(reach.pieces)) return false;
+  if (!best_.optimal || best_.count > 2 || face.outside || reach.n.dot(best_.n) < kBasin ||
+      !best_.holds(reach.pieces))
+    return false;
   for (const std::uint16_t corner : face.corners) {
     if (!best_.holds(hull_.corner(corner).pieces)) return false;
   }

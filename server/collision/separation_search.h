@@ -18,7 +18,7 @@ namespace tumble {
 struct Separation {
   Vec3 normal_A = Vec3::UnitZ();  ///< Unit, from A to B.
   double separation = 0.0;        ///< Along the normal, by true supports [m].
-  Vec3 p_A, p_B;                  ///< The points of the cores of A and B that are nearest, or deepest, in A's frame.
+  Vec3 p_A, p_B;  ///< The points of the cores of A and B that are nearest, or deepest, in A's frame.
   /// Pieces that are furthest along the normal: one where the difference is smooth, two on its ridges, three on faces.
   int count = 0;
   std::array<PiecePair, 3> pieces;

@@ -28,8 +28,14 @@ double least_separation(const Manifold& m) {
 
 std::vector<Shape> one_of_each() {
   RandomPose random(11);
-  return {HalfSpace{}, Sphere{0.4}, Capsule{0.3, 0.6}, Box{Vec3(0.5, 0.3, 0.7)},
-          random_hull(random, 16, Vec3(0.6, 0.5, 0.7))};
+  return {HalfSpace{},
+          Sphere{0.4},
+          Capsule{0.3, 0.6},
+          Box{Vec3(0.5, 0.3, 0.7)},
+          random_hull(random, 16, Vec3(0.6, 0.5, 0.7)),
+          Cylinder{0.4, 0.5},
+          Cone{0.5, 0.4},
+          Ellipsoid{Vec3(0.4, 0.6, 0.5)}};
 }
 
 /// Distance of p from the shape: 0 inside. Independent of the code under test but for the hull's planes.
@@ -41,6 +47,18 @@ double distance_outside(const Shape& shape, const Vec3& p) {
     return std::max(0.0, (p - core).norm() - c->radius);
   }
   if (const auto* b = std::get_if<Box>(&shape)) return (p.cwiseAbs() - b->half_extents).cwiseMax(0.0).norm();
+  const double across = std::sqrt(p.x() * p.x() + p.y() * p.y());
+  if (const auto* c = std::get_if<Cylinder>(&shape)) {
+    return Vec3(std::max(0.0, across - c->radius), std::max(0.0, std::abs(p.z()) - c->half_length), 0.0)
+        .norm();
+  }
+  if (const auto* c = std::get_if<Cone>(&shape)) {  // over the higher of base and side: a lower bound
+    const double l = c->half_length, side = 2.0 * l * (across - c->radius) + c->radius * (p.z() + l);
+    return std::max({0.0, -p.z() - l, side / std::sqrt(4.0 * l * l + c->radius * c->radius)});
+  }
+  if (const auto* e = std::get_if<Ellipsoid>(&shape)) {  // a lower bound
+    return std::max(0.0, (p.cwiseQuotient(e->half_axes).norm() - 1.0) * e->half_axes.minCoeff());
+  }
   double height = 0.0;  // over the highest plane: a lower bound of the distance
   for (const auto& face : (*std::get_if<HullPointer>(&shape))->faces) {
     height = std::max(height, face.normal.dot(p) - face.offset);
@@ -88,7 +106,7 @@ TEST(ClosedForm, HalfSpaceMeetsTheLowestPointOfEverything) {
   RandomPose random(23);
   const std::vector<Shape> shapes = one_of_each();
   for (int i = 0; i < 4000; ++i) {
-    const Shape& b = shapes[static_cast<std::size_t>(1 + i % 4)];
+    const Shape& b = shapes[static_cast<std::size_t>(1 + i % 7)];
     const Pose X_WA = random.pose(3.0);
     const Pose X_AB = random.pose(1.0);
     const Vec3 down_B = X_AB.q.conjugate() * -Vec3::UnitZ();
@@ -192,8 +210,8 @@ TEST(EveryPair, PointsLieInBothShapesGrownByTheMargin) {
   RandomPose random(31);
   const std::vector<Shape> shapes = one_of_each();
   for (int i = 0; i < 6000; ++i) {
-    const Shape& a = shapes[static_cast<std::size_t>(i % 5)];
-    const Shape& b = shapes[static_cast<std::size_t>(1 + i / 5 % 4)];
+    const Shape& a = shapes[static_cast<std::size_t>(i % 8)];
+    const Shape& b = shapes[static_cast<std::size_t>(1 + i / 8 % 7)];
     const Pose X_WA = random.pose(0.7), X_WB = random.pose(0.7);
     const double margin = 0.02,
                  tolerance = 2e-4;  // inside tolerance and merging move a point by 1e-4 at most
@@ -265,8 +283,8 @@ TEST(EveryPair, MovesWithTheWorld) {
   RandomPose random(33);
   const std::vector<Shape> shapes = one_of_each();
   for (int i = 0; i < 3000; ++i) {
-    const Shape& a = shapes[static_cast<std::size_t>(i % 5)];
-    const Shape& b = shapes[static_cast<std::size_t>(1 + i / 5 % 4)];
+    const Shape& a = shapes[static_cast<std::size_t>(i % 8)];
+    const Shape& b = shapes[static_cast<std::size_t>(1 + i / 8 % 7)];
     const Pose X_WA = random.pose(0.7), X_WB = random.pose(0.7), X = random.pose(2.0);
     const Manifold m = query(a, X_WA, b, X_WB, 0.02), moved = query(a, X * X_WA, b, X * X_WB, 0.02);
     ASSERT_EQ(m.count, moved.count);
@@ -344,8 +362,8 @@ TEST(Pipeline, SwitchesChangeCostNotContacts) {
   std::array<NarrowPhaseCounters, 5> counters;
   int contacts = 0;
   for (int i = 0; i < 120; ++i) {
-    const Shape& a = shapes[static_cast<std::size_t>(2 + i % 3)];
-    const Shape& b = shapes[static_cast<std::size_t>(2 + i / 3 % 3)];
+    const Shape& a = shapes[static_cast<std::size_t>(2 + i % 6)];
+    const Shape& b = shapes[static_cast<std::size_t>(2 + i / 6 % 6)];
     std::array<PairCache, 5> caches;
     Pose X_WA = random.pose(0.2), X_WB = random.pose(1.4);
     for (int step = 0; step < 60; ++step) {

@@ -1,0 +1,124 @@
+// How exact contacts of curved shapes are: every pair type against the exhaustive search of
+// tests/unit/collision/curved_reference.h. Prints a table; ends with 1 if a contact is wrong.
+//   accuracy_curved [poses a pair and kind, 2000]
+// wrong: missed, or separating less than the best direction by more than 1e-9 of the shapes' size. The normal's error is
+// taken where the reference's best direction is the only one within 1e-12 of the size, elsewhere ties are as good.
+#include <cstdio>
+#include <cstdlib>
+
+#include "collision/narrow_phase.h"
+#include "unit/collision/curved_reference.h"
+#include "unit/collision/sample_shapes.h"
+
+namespace {
+
+using namespace tumble;
+using namespace tumble::test;
+
+struct Kind {
+  const char* name;
+  double least;  ///< Smallest size of a shape, the largest is 1 [m].
+  double unit;   ///< [m] instead of 1 m
+  bool deep, aligned;
+};
+constexpr Kind kKinds[] = {{"shallow", 0.2, 1.0, false, false},      {"deep", 0.2, 1.0, true, false},
+                           {"aligned", 0.2, 1.0, false, true},       {"aligned deep", 0.2, 1.0, true, true},
+                           {"1:1000", 1e-3, 1.0, false, false},      {"1:1000 deep", 1e-3, 1.0, true, false},
+                           {"millimetres", 0.2, 1e-3, false, false}, {"kilometres", 0.2, 1e3, true, false}};
+constexpr const char* kNames[] = {"sphere", "capsule", "box", "hull", "cylinder", "cone", "ellipsoid"};
+
+Shape make_shape(RandomPose& random, int type, const Kind& kind) {
+  Vec3 size;
+  for (int i = 0; i < 3; ++i) size[i] = kind.unit * random.log_uniform(kind.least, 1.0);
+  switch (type) {
+    case 0:
+      return Sphere{size.x()};
+    case 1:
+      return Capsule{size.x(), size.y()};
+    case 2:
+      return Box{size};
+    case 3:
+      return random_hull(random, 12, size);
+    case 4:
+      return Cylinder{size.x(), size.y()};
+    case 5:
+      return Cone{size.x(), size.y()};
+    default:
+      return Ellipsoid{size};
+  }
+}
+
+Pose make_pose(RandomPose& random, const Shape& a, const Shape& b, const Kind& kind) {
+  Quat q = random.rotation();
+  Vec3 d = random.direction();
+  const double size = bounding_radius(a) + bounding_radius(b);
+  const double depth = size * random.log_uniform(1e-6, 2e-2), share = random.uniform(0.0, 1.0);
+  if (kind.aligned) {
+    const int axis = static_cast<int>(random.uniform(0.0, 3.0)),
+              quarters = static_cast<int>(random.uniform(0.0, 4.0));
+    q = turn(Vec3::Unit(axis), 1.5707963267948966 * quarters);
+    d = Vec3::Unit(static_cast<int>(random.uniform(0.0, 3.0)));
+  }
+  const Vec3 touching = support(a, d) - q * support(b, q.conjugate() * -d);
+  return {q, kind.deep ? Vec3(share * touching) : Vec3(touching - depth * d)};
+}
+
+struct Row {
+  int wrong = 0;
+  double depth_error = 0.0, normal_error = 0.0;
+};
+
+Row run(int type_a, int type_b, const Kind& kind, int poses) {
+  RandomPose random(static_cast<unsigned>(1000 + 10 * type_a + type_b));
+  NarrowPhaseCounters counters;
+  Row row;
+  for (int i = 0; i < poses; ++i) {
+    const Shape a = make_shape(random, type_a, kind), b = make_shape(random, type_b, kind);
+    const Pose X_AB = make_pose(random, a, b, kind);
+    const double size = bounding_radius(a) + bounding_radius(b);
+    PairCache cache;
+    const double margin = 0.1 * size;
+    const Manifold m = collide(a, {}, b, X_AB, margin, {}, cache, counters);
+    const DirectionReference reference(a, b, X_AB);
+    const auto best = reference.search(kind.least < 0.1 ? 3000 : 1200, 6);
+    if (m.count == 0) {
+      if (static_cast<double>(best.separation) <= margin) ++row.wrong;
+      continue;
+    }
+    double found = std::numeric_limits<double>::infinity();
+    for (int k = 0; k < m.count; ++k)
+      found = std::min(found, m.points[static_cast<std::size_t>(k)].separation);
+    const auto promised = static_cast<double>(reference.separation(m.normal_A));
+    const double error =
+        std::max(std::abs(found - promised), static_cast<double>(best.separation) - promised) / size;
+    if (error > row.depth_error) row.depth_error = error;
+    if (error > 1e-9) ++row.wrong;
+    if (std::abs(static_cast<double>(best.separation) - promised) > 1e-12 * size) continue;
+    const double angle = static_cast<double>((best.normal_A - m.normal_A.cast<long double>()).norm());
+    if (angle < 1e-3 && angle > row.normal_error) row.normal_error = angle;
+  }
+  return row;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const int poses = argc > 1 ? std::atoi(argv[1]) : 2000;
+  if (poses <= 0) return std::fprintf(stderr, "accuracy_curved: poses must be > 0\n"), 2;
+  bool good = true;
+  std::printf(
+      "| pair | kind | queries | wrong | depth error / size | normal error [rad] "
+      "|\n|---|---|---|---|---|---|\n");
+  for (int b = 4; b < 7; ++b) {
+    for (int a = 0; a <= b; ++a) {
+      for (const Kind& kind : kKinds) {
+        const Row row = run(a, b, kind, poses);
+        good = good && row.wrong == 0;
+        std::printf("| %s-%s | %s | %d | %d | %.1e | %.1e |\n", kNames[a], kNames[b], kind.name, poses,
+                    row.wrong, row.depth_error, row.normal_error);
+        std::fflush(stdout);
+      }
+    }
+  }
+  return good ? 0 : 1;
+}

@@ -1,0 +1,260 @@
+// Cylinder, cone and ellipsoid against everything: the separation against an exhaustive search, and where the points of
+// flat and straight contacts lie.
+#include "collision/collide_curved.h"
+
+#include <gtest/gtest.h>
+
+#include "collision/narrow_phase.h"
+#include "curved_reference.h"
+#include "sample_shapes.h"
+
+namespace tumble::test {
+namespace {
+
+constexpr double kQuarter = 1.5707963267948966;
+
+Manifold query(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB, double margin) {
+  PairCache cache;
+  NarrowPhaseCounters counters;
+  return collide(a, X_WA, b, X_WB, margin, {}, cache, counters);
+}
+
+double least_separation(const Manifold& m) {
+  double least = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < m.count; ++i) least = std::min(least, m.points[static_cast<std::size_t>(i)].separation);
+  return least;
+}
+
+enum class Overlap { shallow, deep, apart };
+
+/// B at a random place: it touches A along a random direction, and is moved from there.
+Pose place(RandomPose& random, const Shape& a, const Shape& b, Overlap overlap) {
+  const double size = bounding_radius(a) + bounding_radius(b);
+  const Quat q = random.rotation();
+  const Vec3 d = random.direction();
+  const double gap = size * random.log_uniform(1e-6, 2e-2), share = random.uniform(0.0, 1.0);
+  const Vec3 touching = support(a, d) - q * support(b, q.conjugate() * -d);
+  if (overlap == Overlap::deep) return {q, share * touching};
+  return {q, touching + (overlap == Overlap::apart ? gap : -gap) * d};
+}
+
+/// Random shapes of both kinds between `least` and 1 m across.
+struct Types {
+  std::size_t a, b;
+};
+Shape random_shape(RandomPose& random, std::size_t type, double least) {
+  Vec3 size;
+  for (int i = 0; i < 3; ++i) size[i] = random.log_uniform(least, 1.0);
+  switch (type) {
+    case 0:
+      return Sphere{size.x()};
+    case 1:
+      return Capsule{size.x(), size.y()};
+    case 2:
+      return Box{size};
+    case 3:
+      return random_hull(random, 12, size);
+    case 4:
+      return Cylinder{size.x(), size.y()};
+    case 5:
+      return Cone{size.x(), size.y()};
+    default:
+      return Ellipsoid{size};
+  }
+}
+
+class EveryCurvedPair : public ::testing::TestWithParam<Types> {
+ protected:
+  /// Depth error of a random contact, of the shapes' size: against the reference, and of what the normal promises.
+  double depth_error(RandomPose& random, Overlap overlap, double least) {
+    const Shape a = random_shape(random, GetParam().a, least), b = random_shape(random, GetParam().b, least);
+    const Pose X_AB = place(random, a, b, overlap);
+    const double size = bounding_radius(a) + bounding_radius(b);
+    const DirectionReference reference(a, b, X_AB);
+    const Manifold m = query(a, {}, b, X_AB, 0.05 * size);
+    EXPECT_GE(m.count, 1) << shape_name(a) << ' ' << shape_name(b);
+    EXPECT_NEAR(m.normal_A.norm(), 1.0, 1e-14);
+    const double found = least_separation(m);
+    const auto promised = static_cast<double>(reference.separation(m.normal_A));
+    const auto best = static_cast<double>(reference.search(800, 5).separation);
+    EXPECT_GE(best, promised - 1e-12 * size);  // the reference checks itself
+    return std::max(std::abs(found - promised), best - found) / size;
+  }
+};
+
+// 60 poses a pair and kind; 1e5 of each are run by tests/bench/accuracy_curved.
+TEST_P(EveryCurvedPair, SeparatesAsMuchAsAnyDirection) {
+  RandomPose random(static_cast<unsigned>(100 + 10 * GetParam().a + GetParam().b));
+  for (int i = 0; i < 60; ++i) {
+    for (const Overlap overlap : {Overlap::shallow, Overlap::deep, Overlap::apart}) {
+      EXPECT_LE(depth_error(random, overlap, 0.2), 1e-12) << "pose " << i;  // measured 1e-15
+    }
+  }
+}
+
+TEST_P(EveryCurvedPair, NeedlesAndDiscs) {
+  RandomPose random(static_cast<unsigned>(300 + 10 * GetParam().a + GetParam().b));
+  for (int i = 0; i < 30; ++i) {
+    for (const Overlap overlap : {Overlap::shallow, Overlap::deep}) {
+      EXPECT_LE(depth_error(random, overlap, 1e-3), 1e-9) << "pose " << i;
+    }
+  }
+}
+
+std::vector<Types> all_types() {
+  std::vector<Types> types;
+  for (std::size_t b = 4; b < 7; ++b) {
+    for (std::size_t a = 0; a <= b; ++a) types.push_back({a, b});
+  }
+  return types;
+}
+INSTANTIATE_TEST_SUITE_P(All, EveryCurvedPair, ::testing::ValuesIn(all_types()));
+
+TEST(Curved, AMillimetreAndAKilometreAreTheSame) {
+  RandomPose random(81);
+  const auto scaled = [](const Shape& shape, double s) -> Shape {
+    if (const auto* c = std::get_if<Cylinder>(&shape)) return Cylinder{s * c->radius, s * c->half_length};
+    if (const auto* c = std::get_if<Cone>(&shape)) return Cone{s * c->radius, s * c->half_length};
+    if (const auto* b = std::get_if<Box>(&shape)) return Box{s * b->half_extents};
+    return Ellipsoid{s * std::get_if<Ellipsoid>(&shape)->half_axes};
+  };
+  for (int i = 0; i < 400; ++i) {
+    const std::array<std::size_t, 4> types = {2, 4, 5, 6};
+    const Shape a = random_shape(random, types[static_cast<std::size_t>(i % 4)], 0.2);
+    const Shape b = random_shape(random, types[static_cast<std::size_t>(1 + i / 4 % 3)], 0.2);
+    const Pose X_AB = place(random, a, b, i % 2 ? Overlap::shallow : Overlap::deep);
+    const Manifold m = query(a, {}, b, X_AB, 0.0);
+    for (const double s : {0x1p-10, 0x1p+10}) {  // powers of two: not a bit may differ
+      const Manifold other = query(scaled(a, s), {}, scaled(b, s), {X_AB.q, s * X_AB.p}, 0.0);
+      ASSERT_EQ(m.count, other.count);
+      ASSERT_EQ(m.normal_A, other.normal_A);
+      for (std::size_t k = 0; k < static_cast<std::size_t>(m.count); ++k) {
+        ASSERT_EQ(s * m.points[k].separation, other.points[k].separation);
+        ASSERT_EQ(s * m.points[k].p_A, other.points[k].p_A);
+      }
+    }
+  }
+}
+
+TEST(Curved, SwappedPairsOfOneTypeAreMirroredToTheBit) {
+  RandomPose random(82);
+  for (int i = 0; i < 600; ++i) {
+    const std::size_t type = static_cast<std::size_t>(4 + i % 3);
+    const Shape a = random_shape(random, type, 0.2), b = random_shape(random, type, 0.2);
+    const Pose X_WA = random.pose(1.0),
+               X_WB = X_WA * place(random, a, b, i % 2 ? Overlap::shallow : Overlap::deep);
+    Manifold m = query(a, X_WA, b, X_WB, 0.01);
+    const Manifold mirrored = query(b, X_WB, a, X_WA, 0.01);
+    ASSERT_EQ(m.count, mirrored.count);
+    // One of the two is computed and the other turned round: which one, the shapes decide.
+    Manifold turned = mirrored;
+    swap_shapes(turned, relative_pose(X_WB, X_WA));
+    Manifold back = m;
+    swap_shapes(back, relative_pose(X_WA, X_WB));
+    ASSERT_TRUE(turned.normal_A == m.normal_A || back.normal_A == mirrored.normal_A);
+    for (std::size_t k = 0; k < static_cast<std::size_t>(m.count); ++k) {
+      ASSERT_EQ(m.points[k].separation, mirrored.points[k].separation);
+      ASSERT_EQ(m.points[k].feature, mirrored.points[k].feature);
+    }
+  }
+}
+
+TEST(Curved, DegeneratePosesAreFinite) {
+  RandomPose random(83);
+  for (std::size_t type_a = 0; type_a < 7; ++type_a) {
+    for (std::size_t type_b = 4; type_b < 7; ++type_b) {
+      for (const double least : {0.5, 1e-3}) {
+        const Shape a = random_shape(random, type_a, least), b = random_shape(random, type_b, least);
+        const double r = bounding_radius(b);
+        for (const Vec3& p :
+             {Vec3(0, 0, 0), Vec3(1e-300, 0, 0), Vec3(0, 0, r), Vec3(r, 0, 0), Vec3(0, 1e-12, r)}) {
+          for (const Quat& q :
+               {turn(Vec3::UnitX(), 0.0), turn(Vec3::UnitX(), kQuarter), turn(Vec3::UnitY(), 1e-9)}) {
+            const Manifold m = query(a, {}, b, {q, p}, 0.01);
+            ASSERT_NEAR(m.normal_A.norm(), 1.0, 1e-13);
+            for (std::size_t k = 0; k < static_cast<std::size_t>(m.count); ++k) {
+              ASSERT_TRUE(m.points[k].p_A.allFinite() && std::isfinite(m.points[k].separation))
+                  << shape_name(a) << ' ' << shape_name(b);
+            }
+          }
+        }
+      }
+    }
+  }
+}
+
+// Contacts of several points ------------------------------------------------------------------------------------------
+
+TEST(CurvedManifold, AnUprightCylinderStandsOnEightPoints) {
+  const Cylinder cylinder{0.3, 0.5};
+  for (const double tilt : {0.0, 1e-9, 1e-7}) {
+    const Pose X_WB{turn(Vec3::UnitX(), tilt), Vec3(0.1, -0.2, 1.0 - 1e-4)};
+    for (const Shape& ground : {Shape(Box{Vec3(2, 2, 0.5)}), Shape(Cylinder{3.0, 0.5})}) {
+      const Manifold m = query(ground, {}, cylinder, X_WB, 0.01);
+      ASSERT_EQ(m.count, 8) << shape_name(ground) << tilt;
+      EXPECT_NEAR(least_separation(m), -1e-4 - 0.3 * std::sin(tilt), 1e-15);
+      Vec3 middle = Vec3::Zero();
+      for (const ManifoldPoint& point : m.points) {
+        EXPECT_NEAR((point.p_A - Vec3(0.1, -0.2, 0.5)).head<2>().norm(), 0.3, 1e-6);
+        middle += point.p_A / 8;
+      }
+      EXPECT_NEAR((middle - Vec3(0.1, -0.2, 0.5)).head<2>().norm(), 0.0, 1e-6);
+    }
+  }
+}
+
+TEST(CurvedManifold, ALyingCylinderTouchesInItsTwoEnds) {
+  const Pose lying{turn(Vec3::UnitX(), kQuarter), Vec3(0, 0, 0.3 - 1e-5)};
+  const Pose box{Quat::Identity(), Vec3(0, 0, -1)};
+  for (const Manifold& m : {query(HalfSpace{}, {}, Cylinder{0.3, 0.5}, lying, 0.0),
+                            query(Box{Vec3(2, 2, 1)}, box, Cylinder{0.3, 0.5}, lying, 0.0)}) {
+    ASSERT_EQ(m.count, 2);
+    for (std::size_t k = 0; k < 2; ++k) {
+      EXPECT_NEAR(m.points[k].separation, -1e-5, 1e-15);
+      EXPECT_NEAR(std::abs(m.points[k].p_A.y()), 0.5, 1e-12);
+    }
+  }
+}
+
+TEST(CurvedManifold, CylindersSideBySideTouchAlongTheirCommonPart) {
+  const Manifold m =
+      query(Cylinder{0.3, 1.0}, {}, Cylinder{0.2, 1.0}, {Quat::Identity(), Vec3(0.5 - 1e-4, 0, 0.6)}, 0.0);
+  ASSERT_EQ(m.count, 2);
+  EXPECT_LE((m.normal_A - Vec3::UnitX()).norm(), 1e-12);
+  const double low = std::min(m.points[0].p_A.z(), m.points[1].p_A.z());
+  const double high = std::max(m.points[0].p_A.z(), m.points[1].p_A.z());
+  EXPECT_NEAR(low, -0.4, 1e-12);
+  EXPECT_NEAR(high, 1.0, 1e-12);
+}
+
+TEST(CurvedManifold, AConeStandsOnItsBaseAndLiesOnItsSide) {
+  const Cone cone{0.3, 0.4};
+  EXPECT_EQ(query(HalfSpace{}, {}, cone, {Quat::Identity(), Vec3(0, 0, 0.4 - 1e-5)}, 0.0).count, 8);
+  // The side's normal is (2l, r) in the half-plane of the axis: it looks down after this turn.
+  const double angle = std::atan2(0.8, 0.3);
+  const Quat q = turn(Vec3::UnitY(), kQuarter + (kQuarter - angle));
+  const double height = -(q * support(cone, q.conjugate() * -Vec3::UnitZ())).z();
+  const Manifold m = query(HalfSpace{}, {}, cone, {q, Vec3(0, 0, height - 1e-5)}, 1e-4);
+  ASSERT_EQ(m.count, 2);
+  EXPECT_NEAR((m.points[0].p_A - m.points[1].p_A).norm(), std::sqrt(0.8 * 0.8 + 0.3 * 0.3), 1e-4);
+}
+
+TEST(CurvedManifold, NamesSurviveSmallMotion) {
+  RandomPose random(84);
+  const Box box{Vec3(1, 1, 0.5)};
+  const Cylinder cylinder{0.3, 0.5};
+  const Manifold first = query(box, {}, cylinder, {Quat::Identity(), Vec3(0, 0, 1.0)}, 0.01);
+  for (int i = 0; i < 200; ++i) {
+    const Vec3 axis = random.direction(), shift = random.direction();
+    const Pose X{turn(axis, 1e-7), Vec3(0, 0, 1.0) + 1e-7 * shift};
+    const Manifold m = query(box, {}, cylinder, X, 0.01);
+    ASSERT_EQ(m.count, first.count);
+    for (std::size_t k = 0; k < static_cast<std::size_t>(m.count); ++k) {
+      EXPECT_EQ(m.points[k].feature, first.points[k].feature);
+      EXPECT_LE((m.points[k].p_A - first.points[k].p_A).norm(), 1e-6);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace tumble::test

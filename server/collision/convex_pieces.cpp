@@ -28,7 +28,10 @@ Vec3 on_rim(const Vec3& d, double radius, double z) {
 struct PieceOf {
   const Vec3& d;
 
-  std::uint32_t operator()(const HalfSpace&) const { return 0; }
+  template <typename Other>  // not convex, or without a furthest point
+  std::uint32_t operator()(const Other&) const {
+    return 0;
+  }
   std::uint32_t operator()(const Sphere&) const { return 0; }
   std::uint32_t operator()(const Ellipsoid&) const { return 0; }
   std::uint32_t operator()(const Capsule&) const { return std::signbit(d.z()) ? kLow : kHigh; }
@@ -51,7 +54,10 @@ struct PointOf {
   std::uint32_t piece;
 
   double side(double length) const { return piece == kLow ? -length : length; }
-  Vec3 operator()(const HalfSpace&) const { return Vec3::Zero(); }
+  template <typename Other>
+  Vec3 operator()(const Other&) const {
+    return Vec3::Zero();
+  }
   Vec3 operator()(const Sphere&) const { return Vec3::Zero(); }
   Vec3 operator()(const Capsule& c) const { return {0.0, 0.0, side(c.half_length)}; }
   Vec3 operator()(const Cylinder& c) const { return on_rim(d, c.radius, side(c.half_length)); }

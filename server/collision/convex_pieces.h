@@ -19,7 +19,7 @@ struct Curvature {
 
 class ConvexPieces {
  public:
-  /// Not for half-spaces. Keeps a reference to the shape.
+  /// Not for half-spaces and surfaces. Keeps a reference to the shape.
   ConvexPieces(const Shape& shape, const Mat3& R_AS, const Vec3& p_AS);
 
   struct Point {

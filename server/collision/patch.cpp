@@ -97,7 +97,10 @@ struct PatchOf {
     return patch;
   }
 
-  Patch operator()(const HalfSpace&) const { return at_point(Vec3::Zero(), 0); }
+  template <typename Other>  // not convex, or without a furthest point
+  Patch operator()(const Other&) const {
+    return at_point(Vec3::Zero(), 0);
+  }
   Patch operator()(const Sphere&) const { return at_point(Vec3::Zero(), 0); }
   Patch operator()(const Ellipsoid& e) const {
     return at_point(e.half_axes.cwiseProduct(e.half_axes.cwiseProduct(d).normalized()), 0);

@@ -19,6 +19,8 @@ constexpr double kTolerance = 1e-11;
 constexpr int kMaxRounds = 120;
 /// Of one reach, of the shapes' size.
 constexpr double kRounding = 1e-14;
+/// Second derivatives of a reach below this, of the shapes' size, are none.
+constexpr double kFlatCurvature = 1e-13;
 constexpr int kNewtonSteps = 12;
 constexpr double kLongestStep = 0.3;  // [rad]
 /// Newton's method squares its error: a step this short is the last [rad].
@@ -140,19 +142,28 @@ bool Search::start(const Vec3& guess) {
   return hull_.start(corners);
 }
 
-/// Minimum of a smooth piece on the sphere of directions: gradient k - t n, Hessian W - t across n.
+/// Minimum of a smooth piece on the sphere of directions: gradient k - t n, Hessian W - t across n. Where that is flat
+/// along one direction, as between coaxial shapes, only the other one is followed.
 bool Search::step_on_surface(Candidate& c) const {
   const Vec3 k = point(c.pieces[0], c.n);
   const double t = c.n.dot(k);
   const Vec3 u = perpendicular_to(c.n), v = c.n.cross(u);
   const Curvature W = curvature(c.pieces[0], c.n, u, v);
-  if (!W.is_positive(t)) return false;
-  const double uu = W.uu - t, vv = W.vv - t, uv = W.uv, determinant = uu * vv - uv * uv;
-  const double gu = u.dot(k), gv = v.dot(k);
-  const double du = -(vv * gu - uv * gv) / determinant, dv = -(uu * gv - uv * gu) / determinant;
-  const double length = std::sqrt(du * du + dv * dv);
-  const double scale = length > kLongestStep ? kLongestStep / length : 1.0;
-  c.n = (c.n + scale * (du * u + dv * v)).normalized();
+  const double uu = W.uu - t, vv = W.vv - t, uv = W.uv;
+  const double middle = 0.5 * (uu + vv), apart = std::sqrt(0.25 * (uu - vv) * (uu - vv) + uv * uv);
+  const double steep = middle + apart, level = middle - apart;
+  if (!(steep > kFlatCurvature * size_)) return false;
+  // The eigenvector of `steep`, from the better conditioned row.
+  const Vec3 along_u = uu > vv ? Vec3((steep - vv) * u + uv * v) : Vec3(uv * u + (steep - uu) * v);
+  const Vec3 e1 = direction_or(along_u, u), e2 = c.n.cross(e1);
+  Vec3 step = e1 * (-e1.dot(k) / steep);
+  if (level > kFlatCurvature * size_) {
+    step -= e2 * (e2.dot(k) / level);
+  } else if (level < -kFlatCurvature * size_ || std::abs(e2.dot(k)) > kRounding * size_) {
+    return false;
+  }
+  const double length = step.norm();
+  c.n = (c.n + step * (length > kLongestStep ? kLongestStep / length : 1.0)).normalized();
   return true;
 }
 
@@ -178,8 +189,13 @@ std::optional<Search::Ridge> Search::ridge_at(const Candidate& c, const Vec3& n_
 
 bool Search::step_on_ridge(Candidate& c) const {
   const std::optional<Ridge> ridge = ridge_at(c, c.n);
-  if (!ridge || !(ridge->second > 0.0)) return false;
-  const double step = std::clamp(-ridge->slope / ridge->second, -kLongestStep, kLongestStep);
+  if (!ridge) return false;
+  double step = 0.0;  // where the ridge is level one place is as good as the next
+  if (ridge->second > kFlatCurvature * size_) {
+    step = std::clamp(-ridge->slope / ridge->second, -kLongestStep, kLongestStep);
+  } else if (ridge->second < -kFlatCurvature * size_ || std::abs(ridge->slope) > kRounding * size_) {
+    return false;
+  }
   c.n = (ridge->n + step * ridge->u).normalized();
   return true;
 }

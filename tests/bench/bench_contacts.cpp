@@ -120,6 +120,44 @@ Pair hull_pass(Source& source) {
   return hull_pair(source, source.uniform(-0.05, 0.02));
 }
 
+/// Two shapes that touch along a random direction, and `depth` [m] of overlap.
+Pair touching(Source& source, const Shape& a, const Shape& b, double depth) {
+  const Quat q = source.rotation();
+  const Vec3 n = source.vector(-1.0, 1.0).normalized();
+  const Vec3 p = support(a, n) - q * support(b, q.conjugate() * -n) - depth * n;
+  const Pose X_WA{source.rotation(), source.vector(-10.0, 10.0)};
+  return {a, b, X_WA, X_WA * Pose{q, p}};
+}
+const Box kBox{Vec3(0.5, 0.4, 0.3)};
+const Cylinder kCylinder{0.4, 0.5};
+const Cone kCone{0.4, 0.5};
+const Ellipsoid kEllipsoid{Vec3(0.5, 0.4, 0.3)};
+
+Pair cylinder_on_box(Source& source) {
+  return rest_on_top(source, Box{Vec3(1.0, 1.0, 0.5)}, 0.5, kCylinder, Quat::Identity(), 1e-4);
+}
+Pair box_cylinder(Source& source) {
+  return touching(source, kBox, kCylinder, 1e-3);
+}
+Pair box_cylinder_deep(Source& source) {
+  return touching(source, kBox, kCylinder, 0.1);
+}
+Pair cylinder_cylinder(Source& source) {
+  return touching(source, kCylinder, kCylinder, 1e-3);
+}
+Pair cone_cylinder(Source& source) {
+  return touching(source, kCone, kCylinder, 1e-3);
+}
+Pair ellipsoid_ellipsoid(Source& source) {
+  return touching(source, kEllipsoid, kEllipsoid, 1e-3);
+}
+Pair ellipsoid_ellipsoid_deep(Source& source) {
+  return touching(source, kEllipsoid, kEllipsoid, 0.1);
+}
+Pair sphere_ellipsoid(Source& source) {
+  return touching(source, Sphere{0.4}, kEllipsoid, 1e-3);
+}
+
 using Make = Pair (*)(Source&);
 
 std::vector<Pair> make_pairs(Make make) {
@@ -311,6 +349,15 @@ int main(int argc, char** argv) {
   benchmark::RegisterBenchmark("box_resting/tumble_coherent", tumble_coherent, box_face, 1e-6);
   benchmark::RegisterBenchmark("hull32_resting/tumble_coherent", tumble_coherent, hull_rest, 1e-7);
   benchmark::RegisterBenchmark("hull32_moving/tumble_coherent", tumble_coherent, hull_pass, 2e-3);
+  add_class("cylinder_on_box", cylinder_on_box);
+  add_class("box_cylinder", box_cylinder);
+  add_class("box_cylinder_deep", box_cylinder_deep);
+  add_class("cylinder_cylinder", cylinder_cylinder);
+  add_class("cone_cylinder", cone_cylinder);
+  add_class("ellipsoid_ellipsoid", ellipsoid_ellipsoid);
+  add_class("ellipsoid_ellipsoid_deep", ellipsoid_ellipsoid_deep);
+  add_class("sphere_ellipsoid", sphere_ellipsoid);
+  benchmark::RegisterBenchmark("cylinder_resting/tumble_coherent", tumble_coherent, cylinder_on_box, 1e-6);
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
   benchmark::RunSpecifiedBenchmarks();

@@ -16,7 +16,10 @@ struct ReachL {
   using L = long double;
 
   L across() const { return std::sqrt(d.x() * d.x() + d.y() * d.y()); }
-  L operator()(const HalfSpace&) const { return 0; }
+  template <typename Other>  // not convex, or endless
+  L operator()(const Other&) const {
+    return 0;
+  }
   L operator()(const Sphere& s) const { return s.radius; }
   L operator()(const Capsule& c) const { return c.half_length * std::abs(d.z()) + c.radius; }
   L operator()(const Cylinder& c) const { return c.half_length * std::abs(d.z()) + c.radius * across(); }

@@ -1,5 +1,6 @@
-// Ground truth for any two convex shapes: the direction of largest separation among thousands, each of the best ones
-// improved by pattern search, all with supports of its own in 80-bit arithmetic. Slow, and knows nothing of features.
+// Ground truth for any two convex shapes, with supports of its own in 80-bit arithmetic: the direction of largest
+// separation among thousands, the best ones improved by pattern search, and among those on every circle of directions
+// where a support jumps (across an edge or an axis, around a cone's side), on which pattern search gets stuck.
 #pragma once
 
 #include <algorithm>
@@ -35,6 +36,35 @@ struct ReachL {
   }
 };
 
+/// Unit directions at a height along an axis.
+struct CircleL {
+  Vec3L axis;
+  long double height;
+};
+
+struct CirclesOf {
+  std::vector<CircleL>& circles;
+
+  template <typename Other>
+  void operator()(const Other&) const {}
+  void operator()(const Capsule&) const { circles.push_back({Vec3L::UnitZ(), 0}); }
+  void operator()(const Cylinder&) const { circles.push_back({Vec3L::UnitZ(), 0}); }
+  void operator()(const Cone& c) const {
+    const long double r = c.radius, length = 2.0L * c.half_length;
+    circles.push_back({Vec3L::UnitZ(), r / std::sqrt(r * r + length * length)});
+  }
+  void operator()(const Box&) const {
+    for (int k = 0; k < 3; ++k) circles.push_back({Vec3L::Unit(k), 0});
+  }
+  void operator()(const HullPointer& h) const {
+    for (const auto& edge : h->edges) {
+      const Vec3L along =
+          h->vertices[edge.head].cast<long double>() - h->vertices[edge.tail].cast<long double>();
+      circles.push_back({along.normalized(), 0});
+    }
+  }
+};
+
 class DirectionReference {
  public:
   DirectionReference(const Shape& a, const Shape& b, const Pose& X_AB)
@@ -44,7 +74,9 @@ class DirectionReference {
     const Vec3L toward_a = -(R_AB_.transpose() * n_A);
     return n_A.dot(p_AB_) - std::visit(ReachL{toward_a}, b_) - std::visit(ReachL{n_A}, a_);
   }
-  long double separation(const Vec3& n_A) const { return separation(Vec3L(n_A.cast<long double>().normalized())); }
+  long double separation(const Vec3& n_A) const {
+    return separation(Vec3L(n_A.cast<long double>().normalized()));
+  }
 
   /// Best of `directions` spread evenly and the axes of both shapes, after improving the `seeds` best.
   struct Best {
@@ -77,10 +109,49 @@ class DirectionReference {
       const Best improved = improve(candidate);
       if (improved.separation > best.separation) best = improved;
     }
+    std::vector<CircleL> circles, circles_b;
+    std::visit(CirclesOf{circles}, a_);
+    std::visit(CirclesOf{circles_b}, b_);
+    for (const CircleL& c : circles_b) circles.push_back({-(R_AB_ * c.axis), c.height});
+    for (const CircleL& circle : circles) {
+      const Best on_circle = search_circle(circle);
+      if (on_circle.separation > best.separation) best = on_circle;
+    }
     return best;
   }
 
  private:
+  /// Thirds between the neighbours of each sample that is a local maximum.
+  Best search_circle(const CircleL& circle) const {
+    constexpr int kSamples = 180;
+    constexpr long double kStep = 6.283185307179586477L / kSamples;
+    const Vec3L u = circle.axis.unitOrthogonal(), v = circle.axis.cross(u);
+    const long double across = std::sqrt(1.0L - circle.height * circle.height);
+    const auto at = [&](long double angle) -> Best {
+      const Vec3L n = circle.height * circle.axis + across * (std::cos(angle) * u + std::sin(angle) * v);
+      return {separation(n), n};
+    };
+    std::vector<long double> samples;
+    for (int i = 0; i < kSamples; ++i) samples.push_back(at(kStep * i).separation);
+    Best best;
+    for (int i = 0; i < kSamples; ++i) {
+      const auto sample = [&](int k) { return samples[static_cast<std::size_t>((k + kSamples) % kSamples)]; };
+      if (sample(i) < sample(i - 1) || sample(i) < sample(i + 1)) continue;
+      long double low = kStep * (i - 1), high = kStep * (i + 1);
+      while (high - low > 1e-12L) {
+        const long double third = (high - low) / 3.0L;
+        if (at(low + third).separation < at(high - third).separation) {
+          low += third;
+        } else {
+          high -= third;
+        }
+      }
+      const Best refined = at(0.5L * (low + high));
+      if (refined.separation > best.separation) best = refined;
+    }
+    return best;
+  }
+
   Best improve(Best best) const {
     long double step = 0.05L;
     for (int turn = 0; step > 1e-10L; ++turn) {

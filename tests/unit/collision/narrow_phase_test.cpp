@@ -361,13 +361,13 @@ TEST(Pipeline, SwitchesChangeCostNotContacts) {
   options[4].use_cached_facet = false;
   std::array<NarrowPhaseCounters, 5> counters;
   int contacts = 0;
-  for (int i = 0; i < 120; ++i) {
+  for (int i = 0; i < 288; ++i) {
     const Shape& a = shapes[static_cast<std::size_t>(2 + i % 6)];
     const Shape& b = shapes[static_cast<std::size_t>(2 + i / 6 % 6)];
     std::array<PairCache, 5> caches;
     Pose X_WA = random.pose(0.2), X_WB = random.pose(1.4);
     for (int step = 0; step < 60; ++step) {
-      const double pace = i % 2 == 0 ? 1e-9 : 0.02;
+      const double pace = i / 36 % 2 == 0 ? 1e-9 : 0.02;
       const Vec3 axis = random.direction(), drift = random.direction();
       X_WB.q = (turn(axis, pace) * X_WB.q).normalized();
       X_WB.p += pace * (drift - X_WB.p);

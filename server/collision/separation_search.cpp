@@ -19,8 +19,10 @@ constexpr double kTolerance = 1e-11;
 constexpr int kMaxRounds = 120;
 /// Of one reach, of the shapes' size.
 constexpr double kRounding = 1e-14;
-/// Second derivatives of a reach below this, of the shapes' size, are none.
-constexpr double kFlatCurvature = 1e-13;
+/// Of the shapes' size: second derivatives of a reach below this are none, slopes below this don't matter.
+constexpr double kFlatCurvature = 1e-13, kLevelSlope = 1e-11;
+/// ... and an optimum may bend down by this much along a level direction.
+constexpr double kBendsDown = 1e-9;
 constexpr int kNewtonSteps = 12;
 constexpr double kLongestStep = 0.3;  // [rad]
 /// Newton's method squares its error: a step this short is the last [rad].
@@ -105,7 +107,9 @@ class Search {
   bool converge(Candidate& candidate) const;
   enum class Ending { nowhere, same_optimum, better_optimum };
   Ending polish(Candidate candidate);
+  bool is_minimum(const Candidate& c) const;
   void grow_to_best();
+  double newton_step(double slope, double second) const;
   bool step_on_surface(Candidate& c) const;
   struct Ridge {
     Vec3 n, u;
@@ -142,8 +146,14 @@ bool Search::start(const Vec3& guess) {
   return hull_.start(corners);
 }
 
-/// Minimum of a smooth piece on the sphere of directions: gradient k - t n, Hessian W - t across n. Where that is flat
-/// along one direction, as between coaxial shapes, only the other one is followed.
+/// To the minimum where the curve bends up. Where it doesn't, downhill; and not at all where one place is as good as the
+/// next, as all round a common axis.
+double Search::newton_step(double slope, double second) const {
+  if (second > kFlatCurvature * size_) return std::clamp(-slope / second, -kLongestStep, kLongestStep);
+  return std::abs(slope) <= kLevelSlope * size_ ? 0.0 : -std::copysign(kLongestStep, slope);
+}
+
+/// Minimum of a smooth piece on the sphere of directions: gradient k - t n, Hessian W - t across n.
 bool Search::step_on_surface(Candidate& c) const {
   const Vec3 k = point(c.pieces[0], c.n);
   const double t = c.n.dot(k);
@@ -156,12 +166,7 @@ bool Search::step_on_surface(Candidate& c) const {
   // The eigenvector of `steep`, from the better conditioned row.
   const Vec3 along_u = uu > vv ? Vec3((steep - vv) * u + uv * v) : Vec3(uv * u + (steep - uu) * v);
   const Vec3 e1 = direction_or(along_u, u), e2 = c.n.cross(e1);
-  Vec3 step = e1 * (-e1.dot(k) / steep);
-  if (level > kFlatCurvature * size_) {
-    step -= e2 * (e2.dot(k) / level);
-  } else if (level < -kFlatCurvature * size_ || std::abs(e2.dot(k)) > kRounding * size_) {
-    return false;
-  }
+  const Vec3 step = newton_step(e1.dot(k), steep) * e1 + newton_step(e2.dot(k), level) * e2;
   const double length = step.norm();
   c.n = (c.n + step * (length > kLongestStep ? kLongestStep / length : 1.0)).normalized();
   return true;
@@ -190,12 +195,7 @@ std::optional<Search::Ridge> Search::ridge_at(const Candidate& c, const Vec3& n_
 bool Search::step_on_ridge(Candidate& c) const {
   const std::optional<Ridge> ridge = ridge_at(c, c.n);
   if (!ridge) return false;
-  double step = 0.0;  // where the ridge is level one place is as good as the next
-  if (ridge->second > kFlatCurvature * size_) {
-    step = std::clamp(-ridge->slope / ridge->second, -kLongestStep, kLongestStep);
-  } else if (ridge->second < -kFlatCurvature * size_ || std::abs(ridge->slope) > kRounding * size_) {
-    return false;
-  }
+  const double step = newton_step(ridge->slope, ridge->second);
   c.n = (ridge->n + step * ridge->u).normalized();
   return true;
 }
@@ -252,6 +252,7 @@ Search::Ending Search::polish(Candidate candidate) {
       candidate.pieces[least] = candidate.pieces[static_cast<std::size_t>(--candidate.count)];
       continue;
     }
+    if (!is_minimum(candidate)) break;
     if (before.optimal && candidate.n.dot(before.n) > kSameDirection) {
       best_ = before;
       return Ending::same_optimum;
@@ -263,6 +264,17 @@ Search::Ending Search::polish(Candidate candidate) {
     return Ending::better_optimum;
   }
   return Ending::nowhere;
+}
+
+/// Tells a saddle, on which Newton's method may end in a symmetric pose, from a minimum.
+bool Search::is_minimum(const Candidate& c) const {
+  if (c.count == 3) return true;
+  if (c.count == 2) {
+    const std::optional<Ridge> ridge = ridge_at(c, c.n);
+    return ridge && ridge->second >= -kBendsDown * size_;
+  }
+  const Vec3 u = perpendicular_to(c.n), v = c.n.cross(u);
+  return curvature(c.pieces[0], c.n, u, v).is_positive(c.n.dot(point(c.pieces[0], c.n)) - kBendsDown * size_);
 }
 
 void Search::grow_to_best() {

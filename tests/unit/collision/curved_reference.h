@@ -152,9 +152,11 @@ class DirectionReference {
     return best;
   }
 
+  static constexpr int kPatternTurns = 400;  // on a kink it would zigzag for ever
+
   Best improve(Best best) const {
     long double step = 0.05L;
-    for (int turn = 0; step > 1e-10L; ++turn) {
+    for (int turn = 0; step > 1e-10L && turn < kPatternTurns; ++turn) {
       const Vec3L u = best.normal_A.unitOrthogonal(), v = best.normal_A.cross(u);
       bool better = false;
       for (int k = 0; k < 8 && !better; ++k) {

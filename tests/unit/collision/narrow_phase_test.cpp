@@ -290,7 +290,10 @@ TEST(EveryPair, MovesWithTheWorld) {
     ASSERT_EQ(m.count, moved.count);
     if (m.count == 0) continue;
     EXPECT_NEAR(least_separation(m), least_separation(moved), 2e-14) << shape_name(a) << ' ' << shape_name(b);
-    EXPECT_LE((m.normal_A - moved.normal_A).norm(), 1e-12) << shape_name(a) << ' ' << shape_name(b);
+    const bool curved =
+        a.index() > 4 || b.index() > 4;  // there the normal moves along with the contact's place
+    EXPECT_LE((m.normal_A - moved.normal_A).norm(), curved ? 1e-9 : 1e-12)
+        << shape_name(a) << ' ' << shape_name(b);
   }
 }
 

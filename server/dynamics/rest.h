@@ -18,7 +18,8 @@ struct RestSettings {
   double calm_time = 0.5;  ///< [s]
 };
 
-/// Largest |v| + |w| of the island's movable bodies at either end of the step (m/s and rad/s added).
+/// Largest |v| + |w| of the island's movable bodies at either end of the step (m/s and rad/s added), infinite if a
+/// velocity is not finite.
 double island_speed(const ContactProblem& problem);
 
 /// True if the island, solved with `residual`, may rest now. `calm_for` [s] is how long it has been calm, updated here. An

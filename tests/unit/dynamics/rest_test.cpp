@@ -45,6 +45,16 @@ TEST(Rest, IsCertifiedByResidualAndSpeedTogether) {
   EXPECT_FALSE(rests_at_once(0.0, std::nan("")));
 }
 
+TEST(Rest, ANonFiniteBodyIsNotCalmed) {
+  for (const double bad : {std::nan(""), INFINITY}) {
+    ContactProblem problem = island(0.0);
+    problem.bodies[1].w.y() = bad;
+    double calm_for = kSettings.calm_time;
+    EXPECT_FALSE(check_rest(problem, 0.0, kSettings, calm_for));
+    EXPECT_FALSE(check_rest(problem, std::nan(""), kSettings, calm_for));
+  }
+}
+
 TEST(Rest, ATurningPointIsNotRest) {
   ContactProblem problem = island(0.0);
   problem.bodies[1].v0 = Vec3(0.0, 0.0, -0.01);

@@ -2,6 +2,7 @@
 #include "tumble/picture.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace tumble::client {
@@ -20,7 +21,7 @@ Shape& shape_for(Body& body, std::int32_t number) {
 bool is_complete_shape(const Shape& shape) {
   if (static_cast<std::int32_t>(shape.vertices.size()) != shape.num_vertices) return false;
   return std::none_of(shape.vertices.begin(), shape.vertices.end(),
-                      [](const auto& vertex) { return vertex[0] != vertex[0]; });
+                      [](const auto& vertex) { return std::isnan(vertex[0]); });
 }
 
 bool is_complete_body(const Body& body) {

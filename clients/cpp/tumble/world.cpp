@@ -172,7 +172,7 @@ void World::send_due() {
 Answer World::wait(std::int64_t sequence) {
   spin_until([&] { return outbox_.answer(sequence) != nullptr; }, time_limit() + 1.0);
   const Answer* answer = outbox_.answer(sequence);
-  const Answer result = answer ? *answer : Answer{};
+  Answer result = answer ? *answer : Answer{};
   outbox_.forget(sequence);
   return result;
 }

@@ -242,7 +242,16 @@ Manifold collide_capsule_capsule(const Capsule& a, const Capsule& b, const Pose&
     normal_A = direction_or(across, perpendicular_to(core_a.reach));
   }
   const double merge = ContactTolerance::of(std::min(a.half_length, b.half_length)).merge;
-  return make_segment_manifold({core_a, a.radius}, {core_b, b.radius}, normal_A, margin, merge, 0);
+  Manifold manifold =
+      make_segment_manifold({core_a, a.radius}, {core_b, b.radius}, normal_A, margin, merge, 0);
+  // Cores that cross at a small angle run side by side for the manifold: its ends may both be higher than the crossing.
+  const double separation = distance - a.radius - b.radius;
+  if (manifold.count == 0) {
+    const Vec3 middle_A = 0.5 * (closest.p_A + closest.p_B + (a.radius - b.radius) * normal_A);
+    return single_point(normal_A, middle_A, separation, margin, 0);
+  }
+  set_deepest(manifold, separation);
+  return manifold;
 }
 
 Manifold collide_capsule_box(const Capsule& a, const Box& b, const Pose& X_AB, double margin,

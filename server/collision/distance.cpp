@@ -59,7 +59,7 @@ class DistanceSearch {
     for (std::size_t i = 0; i < static_cast<std::size_t>(settings_.start.count); ++i) {
       simplex_.add(point(settings_.start.a_A[i], settings_.start.b_B[i]));
     }
-    const Vec3 centre_line = direction_or(p_AB_, Vec3::UnitZ());
+    Vec3 centre_line = direction_or(p_AB_, Vec3::UnitZ());
     if (simplex_.count() == 0) return centre_line;
     simplex_.reduce();
     upper_ = simplex_.nearest().norm();

@@ -354,7 +354,7 @@ FacetAnswer find_facet(const PolytopePair& pair, double margin, PairCache& cache
   const Facet seed = recall_facet(pair, cache);
   if (seed.kind != Facet::Kind::none && seed.separation > margin) return {seed, -1.0};
   FacetSearch search(pair, cache);
-  const FacetAnswer answer = search.search(margin, seed);
+  FacetAnswer answer = search.search(margin, seed);
   cache.feature = encode(answer.facet);
   return answer;
 }

@@ -6,8 +6,6 @@
 #include <cmath>
 #include <vector>
 
-#include "collision/shape_cast.h"
-
 namespace tumble {
 namespace {
 
@@ -102,18 +100,27 @@ struct Cast {
   }
   std::optional<RayHit> operator()(const TriangleMeshPointer& m) const { return cast_surface(*m); }
   std::optional<RayHit> operator()(const HeightFieldPointer& h) const { return cast_surface(*h); }
-  /// Any other convex shape: a point moved along the ray, from and to where nothing can be beyond.
-  template <typename Convex>
-  std::optional<RayHit> operator()(const Convex& convex) const {
-    const Shape shape(convex);
-    const double reach = 2.0 * bounding_radius(shape);
-    const double from = std::max(start, -reach), to = std::min(start + length, reach);
-    if (from > to) return std::nullopt;
-    const Pose X_AB{Quat::Identity(), -line.at(from)};
-    const auto hit = cast_shape(Sphere{0.0}, shape, X_AB, (to - from) * line.direction);
-    if (!hit) return std::nullopt;
-    if (hit->inside) return RayHit{0.0, -line.direction, 0, true};
-    return RayHit{from - start + hit->fraction * (to - from), hit->normal_A, 0, false};
+  std::optional<RayHit> operator()(const Cylinder& c) const { return cast_side(c.radius, c.half_length); }
+  std::optional<RayHit> operator()(const Cone& c) const {
+    Crossing crossing(line);
+    crossing.clip_plane(Vec3::UnitZ(), c.half_length, 1);
+    crossing.clip_plane(-Vec3::UnitZ(), c.half_length, 2);
+    clip_cone(crossing, c.radius / (2.0 * c.half_length), c.half_length);
+    return crossing.hit(start, length);
+  }
+  std::optional<RayHit> operator()(const Ellipsoid& e) const {
+    // In units of the half axes it is a ball; about the ray's nearest point to the centre there.
+    const Vec3 d = line.direction.cwiseQuotient(e.half_axes);
+    Vec3 o = line.origin.cwiseQuotient(e.half_axes);
+    const double middle = -o.dot(d) / d.squaredNorm();
+    o += middle * d;
+    const double off = o.norm();
+    if (off > 1.0) return std::nullopt;
+    const double half_chord = std::sqrt((1.0 - off) * (1.0 + off) / d.squaredNorm());
+    Crossing crossing(line);
+    crossing.enter(middle - half_chord, (o - half_chord * d).cwiseQuotient(e.half_axes).normalized(), 0);
+    crossing.leave(middle + half_chord);
+    return crossing.hit(start, length);
   }
 
  private:
@@ -160,6 +167,38 @@ struct Cast {
     crossing.clip_plane(-Vec3::UnitZ(), half_length, 2);
     clip_tube(crossing, radius);
     return crossing.hit(start, length);
+  }
+  /// The cone opens downwards from its apex at z = top, by `slope` a metre. Of its quadric only that half counts, which
+  /// the plane at the apex leaves.
+  void clip_cone(Crossing& crossing, double slope, double top) const {
+    const auto o = line.origin.head<2>(), d = line.direction.head<2>();
+    const double radius = slope * (top - line.origin.z()), widening = -slope * line.direction.z();
+    const double a = (d.norm() - widening) * (d.norm() + widening);
+    const double b = o.dot(d) - radius * widening, c = (o.norm() - radius) * (o.norm() + radius);
+    const auto enter = [&](double distance) {
+      const Vec3 p = std::isfinite(distance) ? line.at(distance) : line.origin;
+      crossing.enter(distance, Vec3(p.x(), p.y(), slope * p.head<2>().norm()).normalized(), 0);
+    };
+    if (a > 0.0) {
+      const Roots roots = solve(a, b, c);
+      enter(roots.first);
+      crossing.leave(roots.second);
+      return;
+    }
+    // Steeper than the cone: from one half through the gap between them into the other. Rounded, the gap may vanish at
+    // the apex.
+    double first = -c / (2.0 * b), second = first;
+    if (a < 0.0) {
+      const Roots gap = solve(-a, -b, -c);
+      const bool open = gap.first <= gap.second;
+      first = open ? gap.first : -b / a;
+      second = open ? gap.second : -b / a;
+    }
+    if (widening > 0.0) {
+      enter(second);
+    } else {
+      crossing.leave(first);
+    }
   }
   void clip_tube(Crossing& crossing, double radius) const {
     const auto o = line.origin.head<2>(), d = line.direction.head<2>();

@@ -89,7 +89,7 @@ HullPointer read_hull(ByteReader& reader) {
 }
 
 Shape read_shape(ByteReader& reader) {
-  switch (reader.below(8)) {
+  switch (reader.below(11)) {
     case 0:
       return HalfSpace{};
     case 1:
@@ -101,6 +101,16 @@ Shape read_shape(ByteReader& reader) {
     case 3:
     case 4:
       return Box{read_extents(reader)};
+    case 5: {
+      const Vec3 extents = read_extents(reader);
+      return Cylinder{extents.x(), extents.z()};
+    }
+    case 6: {
+      const Vec3 extents = read_extents(reader);
+      return Cone{extents.x(), extents.z()};
+    }
+    case 7:
+      return Ellipsoid{read_extents(reader)};
     default:
       return read_hull(reader);
   }

@@ -16,7 +16,16 @@ inline std::vector<Shape> random_shapes(RandomPose& random, double low = 0.3, do
   shapes.push_back(Capsule{radius, half_length});
   shapes.push_back(Box{size});
   shapes.push_back(random_hull(random, 16, hull_size));
+  shapes.push_back(Cylinder{radius, half_length});
+  shapes.push_back(Cone{radius, half_length});
+  shapes.push_back(Ellipsoid{size});
   return shapes;
+}
+
+/// Their distances converge from both sides and stop at a hair, where those of flat and round shapes are known to rounding.
+inline bool is_curved(const Shape& shape) {
+  return std::holds_alternative<Cylinder>(shape) || std::holds_alternative<Cone>(shape) ||
+         std::holds_alternative<Ellipsoid>(shape);
 }
 
 /// B moved along d from A until the plane pair square to d is `gap` [m] apart: they are at least that far apart.

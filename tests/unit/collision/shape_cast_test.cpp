@@ -41,7 +41,7 @@ TEST(ShapeCast, SphereOnSphereInClosedForm) {
 TEST(ShapeCast, NothingIsTouchedBeforeAndNothingIsMissed) {
   RandomPose random(22);
   int hits = 0, misses = 0, most_steps = 0;
-  double gap_at_hit = 0.0;
+  double gap_at_hit = 0.0, curved_gap_at_hit = 0.0;
   for (int i = 0; i < 12; ++i) {
     const auto as = random_shapes(random), bs = random_shapes(random);
     for (const Shape& a : as) {
@@ -60,7 +60,8 @@ TEST(ShapeCast, NothingIsTouchedBeforeAndNothingIsMissed) {
             const double at = end * s / 50.0;
             const Distance distance = compute_distance(a, b, {q, X_AB.p - at * way});
             if (hit && s == 50) {
-              gap_at_hit = std::max(gap_at_hit, distance.upper / size);
+              double& worst = is_curved(a) || is_curved(b) ? curved_gap_at_hit : gap_at_hit;
+              worst = std::max(worst, distance.upper / size);
               // Touched from outside, and moved on it would overlap: the normal is against the way.
               EXPECT_LE(hit->normal_A.dot(way), 0.0);
               EXPECT_NEAR(hit->normal_A.norm(), 1.0, 1e-14);
@@ -74,8 +75,9 @@ TEST(ShapeCast, NothingIsTouchedBeforeAndNothingIsMissed) {
   }
   EXPECT_GT(hits, 500);
   EXPECT_GT(misses, 200);
-  EXPECT_LE(gap_at_hit, 5e-14);  // measured 1.5e-14
-  EXPECT_LE(most_steps, 20);     // measured 9
+  EXPECT_LE(gap_at_hit, 5e-14);        // measured 1.5e-14
+  EXPECT_LE(curved_gap_at_hit, 1e-9);  // measured 9.2e-11
+  EXPECT_LE(most_steps, 20);           // measured 9
 }
 
 TEST(ShapeCast, ThinPlateIsNeverPassed) {

@@ -14,14 +14,15 @@ constexpr double kNoCrossing = 1e-12;
 }  // namespace
 
 void ClipPolygon::add_vertex(const Vec3& p, std::uint32_t vertex, std::uint32_t mark) {
+  const std::uint32_t name = name_vertex(!reference_is_a_, vertex);
   Vertex& added = loops_[0][static_cast<std::size_t>(count_)];
-  added = {p, name_vertex(!reference_is_a_, vertex), vertex, vertex, false, mark, mark};
+  added = {p, name, vertex, vertex, false, mark, mark};
   if (count_ > 0) {
     Vertex& before = loops_[0][static_cast<std::size_t>(count_ - 1)];
     before.head = vertex;
     added.marks |= before.mark;
   }
-  if (count_ == 0 || p.z() < lowest_.p.z()) lowest_ = added;
+  if (count_ == 0 || p.z() < lowest_.p.z()) lowest_ = {p, name, mark};
   ++count_;
 }
 
@@ -50,51 +51,38 @@ void ClipPolygon::continue_along(const ClipSide& side, Vertex& vertex) {
 void ClipPolygon::cut(const ClipSide& side, double tolerance) {
   const std::size_t total = static_cast<std::size_t>(count_);
   const Loop& vertices = loops_[static_cast<std::size_t>(current_)];
-  std::array<double, kCapacity> distance;
-  bool all_inside = true;
-  for (std::size_t i = 0; i < total; ++i) {
+  const auto outside = [&](std::size_t i) {
     const Vec3& p = vertices[i].p;
-    distance[i] = side.nx * p.x() + side.ny * p.y() - side.offset;
-    all_inside = all_inside && distance[i] <= tolerance;
-  }
-  if (all_inside) return;
+    return side.nx * p.x() + side.ny * p.y() - side.offset;
+  };
+  std::size_t inner = 0;
+  while (inner < total && outside(inner) <= tolerance) ++inner;
+  if (inner == total) return;
 
   Loop& kept = loops_[static_cast<std::size_t>(1 - current_)];
   std::size_t n = 0;
+  double distance = outside(0);
   for (std::size_t i = 0; i < total; ++i) {
-    const std::size_t j = i + 1 == total ? 0 : i + 1;
-    const bool inside = distance[i] <= tolerance, next_inside = distance[j] <= tolerance;
-    if (inside) kept[n++] = vertices[i];
-    if (inside == next_inside) continue;
-    const double rise = distance[j] - distance[i];
-    const bool crosses = distance[i] * distance[j] < 0.0 && std::abs(rise) > kNoCrossing;
-    if (crosses && n < kept.size()) {
-      const Vec3 p = vertices[i].p + (distance[i] / -rise) * (vertices[j].p - vertices[i].p);
-      kept[n] = vertices[i];
-      kept[n].p = p;
-      kept[n].name = name_meeting(vertices[i], side);
-      kept[n].marks = vertices[i].mark | side.mark;
-      if (inside) continue_along(side, kept[n]);
-      ++n;
-    } else if (inside) {
-      continue_along(side, kept[n - 1]);
+    const std::size_t next = i + 1 == total ? 0 : i + 1;
+    const Vertex& vertex = vertices[i];
+    const double next_distance = outside(next);
+    const bool inside = distance <= tolerance, next_inside = next_distance <= tolerance;
+    if (inside) kept[n++] = vertex;
+    if (inside != next_inside) {
+      const double rise = next_distance - distance;
+      const bool crosses = distance * next_distance < 0.0 && std::abs(rise) > kNoCrossing;
+      if (crosses && n < kept.size()) {
+        const Vec3 p = vertex.p + (distance / -rise) * (vertices[next].p - vertex.p);
+        kept[n++] = {p,           name_meeting(vertex, side), vertex.tail, vertex.head, vertex.on_side,
+                     vertex.mark, vertex.mark | side.mark};
+      }
+      // The loop leaves: what was kept last is where it turns onto the side.
+      if (inside) continue_along(side, kept[n - 1]);
     }
+    distance = next_distance;
   }
   current_ = 1 - current_;
   count_ = static_cast<int>(n);
-}
-
-Manifold ClipPolygon::make_manifold(const FacePlane& plane, const Vec3& normal_A, bool overlap, double margin,
-                                    double merge) const {
-  ManifoldBuilder builder(normal_A, margin, merge);
-  for (std::size_t i = 0; i < static_cast<std::size_t>(count_); ++i) {
-    const Vertex& vertex = loops_[static_cast<std::size_t>(current_)][i];
-    if (vertex.p.z() <= margin) builder.add(plane.middle_A(vertex.p), vertex.p.z(), vertex.name);
-  }
-  if (builder.count() == 0 && overlap) {
-    builder.add(plane.middle_A(lowest_.p), lowest_.p.z(), lowest_.name);
-  }
-  return builder.finish();
 }
 
 }  // namespace tumble

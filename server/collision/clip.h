@@ -18,10 +18,11 @@ struct FacePlane {
   Vec3 origin_A, u_A, v_A, f_A, n_A;
 
   /// x, y: where the line through p along n meets the plane; z: the distance to there along n.
-  Vec3 to_plane(const Vec3& p_A) const {
-    const Vec3 d = p_A - origin_A;
-    const double z = f_A.dot(d) / f_A.dot(n_A);
-    const Vec3 foot = d - z * n_A;
+  Vec3 to_plane(const Vec3& p_A) const { return direction_to_plane(p_A - origin_A); }
+  /// The same of the difference of two points.
+  Vec3 direction_to_plane(const Vec3& d_A) const {
+    const double z = f_A.dot(d_A) / f_A.dot(n_A);
+    const Vec3 foot = d_A - z * n_A;
     return {u_A.dot(foot), v_A.dot(foot), z};
   }
   /// The middle between such a point and its foot on the plane, in A.
@@ -59,9 +60,21 @@ class ClipPolygon {
   }
 
   /// Everything up to the margin as manifold with normal_A (from A to B). If nothing lies over the reference face although
-  /// the bodies overlap, by rounding, the lowest vertex of the uncut polygon speaks for it.
-  Manifold make_manifold(const FacePlane& plane, const Vec3& normal_A, bool overlap, double margin,
-                         double merge) const;
+  /// the bodies overlap, by rounding, the lowest vertex of the uncut polygon speaks for it. `middle_A(p)` is the point in
+  /// A in the middle between p and the plane.
+  template <typename MiddleA>
+  Manifold make_manifold(const MiddleA& middle_A, const Vec3& normal_A, bool overlap, double margin,
+                         double merge) const {
+    ManifoldBuilder builder(normal_A, margin, merge);
+    for (int i = 0; i < count_; ++i) {
+      const Vertex& vertex = loops_[static_cast<std::size_t>(current_)][static_cast<std::size_t>(i)];
+      if (vertex.p.z() <= margin) builder.add(middle_A(vertex.p), vertex.p.z(), vertex.name);
+    }
+    if (builder.count() == 0 && overlap) {
+      builder.add(middle_A(lowest_.p), lowest_.p.z(), lowest_.name);
+    }
+    return builder.finish();
+  }
 
  private:
   static constexpr int kCapacity = 2 * kMaxFaceVertices + 2;
@@ -78,7 +91,7 @@ class ClipPolygon {
 
   bool reference_is_a_;
   int count_ = 0;
-  Vertex lowest_;
+  Corner lowest_;
   int current_ = 0;  ///< Which of the two loops holds the polygon; the other one receives what a cut leaves.
   std::array<Loop, 2> loops_;
 };

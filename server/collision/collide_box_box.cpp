@@ -36,8 +36,7 @@ struct Axis {
   int i = 0, j = 0;  // edges: along axis i of A and j of B
 };
 
-/// The best face axis, or, if `beyond` says so, one that separates by more than the margin.
-Axis find_face_axis(const BoxPair& pair, double margin, double tie, bool& beyond) {
+Axis find_face_axis(const BoxPair& pair, double tie) {
   const Vec3 t_B = pair.R.transpose() * pair.t;
   const Vec3 a_axes = pair.t.cwiseAbs() - (pair.a + pair.R_abs * pair.b);
   const Vec3 b_axes = t_B.cwiseAbs() - (pair.b + pair.R_abs.transpose() * pair.a);
@@ -46,14 +45,10 @@ Axis find_face_axis(const BoxPair& pair, double margin, double tie, bool& beyond
     if (a_axes[k] > a_axes[i] + tie) i = k;
     if (b_axes[k] > b_axes[j] + tie) j = k;
   }
-  Axis best;
   if (b_axes[j] > a_axes[i] + tie) {
-    best = {b_axes[j], std::copysign(1.0, t_B[j]) * pair.R.col(j), Axis::Kind::face_b};
-  } else {
-    best = {a_axes[i], std::copysign(1.0, pair.t[i]) * Vec3::Unit(i), Axis::Kind::face_a};
+    return {b_axes[j], std::copysign(1.0, t_B[j]) * pair.R.col(j), Axis::Kind::face_b};
   }
-  beyond = best.separation > margin;
-  return best;
+  return {a_axes[i], std::copysign(1.0, pair.t[i]) * Vec3::Unit(i), Axis::Kind::face_a};
 }
 
 /// Separation along n = e_i x r_j / length, with |n . e_i| and |n . r_j| (zero but for rounding) counted if `honest`.
@@ -68,45 +63,42 @@ Axis evaluate_edge_axis(const BoxPair& pair, int i, int j, double length, bool h
   return {std::abs(centre) - extents, std::copysign(1.0, centre) * n, Axis::Kind::edges, i, j};
 }
 
+/// Whether scaled / sqrt(length2) > floor, without the root; may say yes within rounding.
+bool may_exceed(double scaled, double length2, double floor) {
+  const double square = scaled * scaled, floor2 = floor * floor * length2;
+  return scaled < 0.0 ? floor < 0.0 && square <= floor2 * (1.0 + 1e-12)
+                      : floor <= 0.0 || square >= floor2 * (1.0 - 1e-12);
+}
+
+/// Replaces `best` by the crossing of A's axis i with B's axis j if that separates more, and more than `at_least`.
+template <int i, int j>
+void try_edge_axis(const BoxPair& pair, double at_least, Axis& best) {
+  constexpr int i1 = (i + 1) % 3, i2 = (i + 2) % 3, j1 = (j + 1) % 3, j2 = (j + 2) % 3;
+  // e_i x r_j = (0, -R(i2, j), R(i1, j)) in the cyclic order of i; its products with r_j1, r_j2 are entries of R.
+  const double length2 = pair.R(i1, j) * pair.R(i1, j) + pair.R(i2, j) * pair.R(i2, j);
+  const double centre = pair.t[i2] * pair.R(i1, j) - pair.t[i1] * pair.R(i2, j);
+  const double extents = pair.a[i1] * pair.R_abs(i2, j) + pair.a[i2] * pair.R_abs(i1, j) +
+                         pair.b[j1] * pair.R_abs(i, j2) + pair.b[j2] * pair.R_abs(i, j1);
+  const bool honest = length2 < kNearlyParallel;
+  if (!honest && !may_exceed(std::abs(centre) - extents, length2, std::max(best.separation, at_least)))
+    return;
+  if (length2 < kParallel) return;
+  const Axis axis = evaluate_edge_axis(pair, i, j, std::sqrt(length2), honest);
+  if (axis.separation > best.separation) best = axis;
+}
+
 /// The best of the nine crossings, or the first beyond the margin.
-Axis find_edge_axis(const BoxPair& pair, double margin, double at_least, bool& beyond) {
+Axis find_edge_axis(const BoxPair& pair, double margin, double at_least) {
   Axis best;
-  beyond = false;
-  for (int i = 0; i < 3; ++i) {
-    const int i1 = (i + 1) % 3, i2 = (i + 2) % 3;
-    for (int j = 0; j < 3; ++j) {
-      const int j1 = (j + 1) % 3, j2 = (j + 2) % 3;
-      // e_i x r_j = (0, -R(i2, j), R(i1, j)) in the cyclic order of i; its products with r_j1, r_j2 are entries of R.
-      const double length2 = pair.R(i1, j) * pair.R(i1, j) + pair.R(i2, j) * pair.R(i2, j);
-      if (length2 < kParallel) continue;
-      const double centre = pair.t[i2] * pair.R(i1, j) - pair.t[i1] * pair.R(i2, j);
-      const double extents = pair.a[i1] * pair.R_abs(i2, j) + pair.a[i2] * pair.R_abs(i1, j) +
-                             pair.b[j1] * pair.R_abs(i, j2) + pair.b[j2] * pair.R_abs(i, j1);
-      const double scaled = std::abs(centre) - extents;
-      const bool honest = length2 < kNearlyParallel;
-      const double floor = std::max(best.separation, at_least);
-      // Compare without the square root: scaled / length > floor.
-      if (!honest &&
-          (scaled < 0.0 ? floor >= 0.0 || scaled * scaled > floor * floor * length2 * (1.0 + 1e-12)
-                        : floor > 0.0 && scaled * scaled < floor * floor * length2 * (1.0 - 1e-12))) {
-        continue;
-      }
-      const Axis axis = evaluate_edge_axis(pair, i, j, std::sqrt(length2), honest);
-      if (axis.separation <= best.separation) continue;
-      best = axis;
-      beyond = best.separation > margin;
-      if (beyond) return best;
-    }
-  }
+  const auto try_all = [&]<int... k>(std::integer_sequence<int, k...>) {
+    (void)(... || (try_edge_axis<k / 3, k % 3>(pair, at_least, best), best.separation > margin));
+  };
+  try_all(std::make_integer_sequence<int, 9>{});
   return best;
 }
 
-/// Corners of a box are numbered by the signs of their coordinates: bit k is set on the positive side of axis k.
-Vec3 box_corner(const Vec3& h, std::uint32_t corner) {
-  return {corner & 1 ? h.x() : -h.x(), corner & 2 ? h.y() : -h.y(), corner & 4 ? h.z() : -h.z()};
-}
-
-/// The face of a box that looks along d most: across axis k, on the side `sign`.
+/// The face of a box that looks along d most: across axis k, on the side `sign`. Corners of a box are numbered by the
+/// signs of their coordinates: bit k is set on the positive side of axis k.
 struct BoxFace {
   int k;
   double sign, cosine;
@@ -116,54 +108,90 @@ struct BoxFace {
     const double cosine = d.cwiseAbs().maxCoeff(&k);
     return {k, std::copysign(1.0, d[k]), cosine};
   }
-  /// Corner i = 0..3, counter-clockwise from outside.
-  std::uint32_t corner(int i) const {
-    const std::uint32_t first = sign > 0.0 ? i == 1 || i == 2 : i == 0 || i == 3, second = i >= 2;
-    return first << (k + 1) % 3 | second << (k + 2) % 3 | static_cast<std::uint32_t>(sign > 0.0) << k;
-  }
+  double width(const Vec3& h) const { return std::min(h[(k + 1) % 3], h[(k + 2) % 3]); }
 };
 
 bool lie_face_to_face(const BoxFace& face_a, const BoxFace& face_b) {
   return std::min(face_a.cosine, face_b.cosine) > ContactTolerance::kFaceToFace;
 }
 
-/// Clips B's face against A's or the other way round, whichever `reference_is_a` says.
+/// The plane of a box's face in the box's frame: x, y along the box's axes k + 1 and k + 2 (cyclic), z outward; as
+/// FacePlane, but its axes need no products.
+struct BoxFacePlane {
+  BoxFacePlane(const BoxFace& face, const Vec3& h, const Vec3& n)
+      : k(face.k), k1((k + 1) % 3), k2((k + 2) % 3), height(face.sign * h[k]), n(n), per_n(1.0 / n[k]) {}
+
+  /// Of the difference of two points; of a point, less the face's height along k.
+  Vec3 to_plane(const Vec3& d) const {
+    const double z = d[k] * per_n;
+    return {d[k1] - z * n[k1], d[k2] - z * n[k2], z};
+  }
+  /// The middle between such a point and its foot on the plane.
+  Vec3 middle(const Vec3& p) const {
+    Vec3 middle = (0.5 * p.z()) * n;
+    middle[k] += height;
+    middle[k1] += p.x();
+    middle[k2] += p.y();
+    return middle;
+  }
+
+  int k, k1, k2;
+  double height;
+  Vec3 n;  ///< Contact normal away from the box, unit, near the face's.
+  double per_n;
+};
+
+/// The incident box's face `face` over the plane; R, t: pose of that box in the reference's frame, h its half extents.
+void add_face(const BoxFacePlane& plane, const BoxFace& face, const Mat3& R, const Vec3& t, const Vec3& h,
+              ClipPolygon& polygon) {
+  const int k = face.k, k1 = (k + 1) % 3, k2 = (k + 2) % 3;
+  Vec3 centre = t + (face.sign * h[k]) * R.col(k);
+  centre[plane.k] -= plane.height;
+  const Vec3 middle = plane.to_plane(centre);
+  // Counter-clockwise from outside.
+  const Vec3 e1 = plane.to_plane(face.sign * h[k1] * R.col(k1)), e2 = plane.to_plane(h[k2] * R.col(k2));
+  const bool up = face.sign > 0.0;
+  const std::uint32_t side = up ? 1u << k : 0u, bit1 = 1u << k1, bit2 = 1u << k2;
+  const std::uint32_t first = up ? side : side | bit1, second = first ^ bit1;
+  polygon.add_vertex(middle - e1 - e2, first);
+  polygon.add_vertex(middle + e1 - e2, second);
+  polygon.add_vertex(middle + e1 + e2, second | bit2);
+  polygon.add_vertex(middle - e1 + e2, first | bit2);
+  polygon.close();
+}
+
+/// Cuts away what is not over the reference face.
+void cut_by_face(const BoxFacePlane& plane, const BoxFace& face, const Vec3& h, double tolerance,
+                 ClipPolygon& polygon) {
+  const std::uint32_t bit1 = 1u << plane.k1, bit2 = 1u << plane.k2,
+                      base = static_cast<std::uint32_t>(face.sign > 0.0) << plane.k;
+  // In the order +x, +y, -x, -y, each from its lower to its upper corner as the loop runs for sign > 0.
+  polygon.cut({1, 0, h[plane.k1], base | bit1, base | bit1 | bit2}, tolerance);
+  polygon.cut({0, 1, h[plane.k2], base | bit1 | bit2, base | bit2}, tolerance);
+  polygon.cut({-1, 0, h[plane.k1], base | bit2, base}, tolerance);
+  polygon.cut({0, -1, h[plane.k2], base, base | bit1}, tolerance);
+}
+
+/// Clips B's face against A's or the other way round, whichever `reference_is_a` says, in the reference's frame.
 Manifold clip_faces(const BoxPair& pair, const Axis& axis, const BoxFace& face_a, const BoxFace& face_b,
                     bool reference_is_a, double margin) {
-  const BoxFace& reference = reference_is_a ? face_a : face_b;
-  const BoxFace& incident = reference_is_a ? face_b : face_a;
-  const Vec3& h = reference_is_a ? pair.a : pair.b;
-  const Vec3& h_incident = reference_is_a ? pair.b : pair.a;
-  const int k = reference.k, k1 = (k + 1) % 3, k2 = (k + 2) % 3;
-  FacePlane plane;
-  if (reference_is_a) {
-    plane = {Vec3::Unit(k) * (reference.sign * h[k]), Vec3::Unit(k1), Vec3::Unit(k2),
-             Vec3::Unit(k) * reference.sign, axis.normal_A};
-  } else {
-    const Vec3 outward_A = reference.sign * pair.R.col(k);
-    plane = {pair.t + outward_A * h[k], pair.R.col(k1), pair.R.col(k2), outward_A, -axis.normal_A};
-  }
-
-  ClipPolygon polygon(reference_is_a);
-  for (int i = 0; i < 4; ++i) {
-    const std::uint32_t corner = incident.corner(i);
-    const Vec3 p = box_corner(h_incident, corner);
-    polygon.add_vertex(plane.to_plane(reference_is_a ? Vec3(pair.R * p + pair.t) : p), corner);
-  }
-  polygon.close();
-
-  const double width =
-      std::min({h[k1], h[k2], h_incident[(incident.k + 1) % 3], h_incident[(incident.k + 2) % 3]});
+  const double width = std::min(face_a.width(pair.a), face_b.width(pair.b));
   const ContactTolerance tolerance = ContactTolerance::of(width, lie_face_to_face(face_a, face_b));
-  // Sides in the order +u, +v, -u, -v, each from its lower to its upper corner as the loop runs for sign > 0.
-  const std::uint32_t bit1 = 1u << k1, bit2 = 1u << k2,
-                      base = static_cast<std::uint32_t>(reference.sign > 0.0) << k;
-  const std::array<ClipSide, 4> sides = {{{1, 0, h[k1], base | bit1, base | bit1 | bit2},
-                                          {0, 1, h[k2], base | bit1 | bit2, base | bit2},
-                                          {-1, 0, h[k1], base | bit2, base},
-                                          {0, -1, h[k2], base, base | bit1}}};
-  for (const ClipSide& side : sides) polygon.cut(side, tolerance.inside);
-  return polygon.make_manifold(plane, axis.normal_A, axis.separation <= 0.0, margin, tolerance.merge);
+  const bool overlap = axis.separation <= 0.0;
+  ClipPolygon polygon(reference_is_a);
+  if (reference_is_a) {
+    const BoxFacePlane plane(face_a, pair.a, axis.normal_A);
+    add_face(plane, face_b, pair.R, pair.t, pair.b, polygon);
+    cut_by_face(plane, face_a, pair.a, tolerance.inside, polygon);
+    const auto middle_A = [&](const Vec3& p) { return plane.middle(p); };
+    return polygon.make_manifold(middle_A, axis.normal_A, overlap, margin, tolerance.merge);
+  }
+  const Mat3 R_BA = pair.R.transpose();
+  const BoxFacePlane plane(face_b, pair.b, -(R_BA * axis.normal_A));
+  add_face(plane, face_a, R_BA, -(R_BA * pair.t), pair.a, polygon);
+  cut_by_face(plane, face_b, pair.b, tolerance.inside, polygon);
+  const auto middle_A = [&](const Vec3& p) -> Vec3 { return pair.R * plane.middle(p) + pair.t; };
+  return polygon.make_manifold(middle_A, axis.normal_A, overlap, margin, tolerance.merge);
 }
 
 /// The edge of a box along axis `i` that reaches furthest along n, with its two corners.
@@ -207,18 +235,21 @@ Manifold collide_box_box(const Box& a, const Box& b, const Pose& X_AB, double ma
   const BoxPair pair{a.half_extents, b.half_extents, X_AB.p, R, R.cwiseAbs()};
   const double tie = kTie * (pair.a.sum() + pair.b.sum());
 
-  bool beyond = false;
-  Axis best = find_face_axis(pair, margin, tie, beyond);
-  if (!beyond) {
-    const Axis edge = find_edge_axis(pair, margin, best.separation + tie, beyond);
+  Axis best = find_face_axis(pair, tie);
+  if (best.separation <= margin) {
+    const Axis edge = find_edge_axis(pair, margin, best.separation + tie);
     if (edge.separation > best.separation + tie) best = edge;
   }
   cache.axis_A = best.normal_A;
   cache.gap = best.separation;
-  if (beyond) return {};
+  if (best.separation > margin) return {};
   bool face_to_face = false;
-  const Manifold manifold = make_manifold(pair, best, margin, face_to_face);
-  return contact_of_closest_points(manifold, best.separation, face_to_face, a, b, X_AB, margin, cache);
+  Manifold manifold = make_manifold(pair, best, margin, face_to_face);
+  const double size = pair.a.norm() + pair.b.norm();
+  if (!touches_along_axis(manifold, best.separation, size)) {
+    manifold = contact_of_closest_points(manifold, best.separation, face_to_face, a, b, X_AB, margin, cache);
+  }
+  return manifold;
 }
 
 }  // namespace tumble

@@ -79,7 +79,8 @@ Manifold clip_faces(const PlacedFace& reference, const PlacedFace& incident, boo
     }
     tail = head;
   }
-  return polygon.make_manifold(plane, normal_A, facet.separation <= 0.0, margin, tolerance.merge);
+  const auto middle_A = [&](const Vec3& p) { return plane.middle_A(p); };
+  return polygon.make_manifold(middle_A, normal_A, facet.separation <= 0.0, margin, tolerance.merge);
 }
 
 Manifold cross_edges(const PolytopePair& pair, const Facet& facet, double margin) {
@@ -137,7 +138,8 @@ Manifold collide(const PolytopePair& pair, const Shape& a, const Shape& b, const
   cache.slack = answer.lead;
   if (separation > margin) return {};
   bool face_to_face = false;
-  const Manifold manifold = make_manifold(pair, answer.facet, margin, face_to_face);
+  Manifold manifold = make_manifold(pair, answer.facet, margin, face_to_face);
+  if (touches_along_axis(manifold, separation, pair.a.radius + pair.b.radius)) return manifold;
   return contact_of_closest_points(manifold, separation, face_to_face, a, b, X_AB, margin, cache);
 }
 

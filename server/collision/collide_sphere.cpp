@@ -120,7 +120,9 @@ Manifold collide_sphere_sphere(const Sphere& a, const Sphere& b, const Pose& X_A
   const double reach = a.radius + b.radius + margin;
   const double distance2 = X_AB.p.squaredNorm();
   if (reach < 0.0 || distance2 > reach * reach) return {};
-  return from_centre(a, direction_or(X_AB.p, Vec3::UnitZ()), std::sqrt(distance2) - b.radius, margin, 0);
+  const double distance = std::sqrt(distance2);
+  const Vec3 normal_A = distance > 0.0 ? Vec3(X_AB.p / distance) : Vec3(Vec3::UnitZ());
+  return from_centre(a, normal_A, distance - b.radius, margin, 0);
 }
 
 Manifold collide_sphere_capsule(const Sphere& a, const Capsule& b, const Pose& X_AB, double margin) {

@@ -26,23 +26,28 @@ double lowest(const Manifold& manifold) {
 
 }  // namespace
 
-Manifold contact_of_closest_points(Manifold manifold, double separation, bool face_to_face, const Shape& a,
-                                   const Shape& b, const Pose& X_AB, double margin, PairCache& cache) {
-  const double rounding = kRounding * (bounding_radius(a) + bounding_radius(b));
-  if (separation < -rounding || lowest(manifold) <= separation + rounding) {
-    set_deepest(manifold, separation);
-    return manifold;
-  }
+bool touches_along_axis(Manifold& manifold, double separation, double size) {
+  const double rounding = kRounding * size;
+  if (separation >= -rounding && lowest(manifold) > separation + rounding) return false;
+  set_deepest(manifold, separation);
+  return true;
+}
+
+Manifold contact_of_closest_points(const Manifold& along_axis, double separation, bool face_to_face,
+                                   const Shape& a, const Shape& b, const Pose& X_AB, double margin,
+                                   PairCache& cache) {
+  const double size = bounding_radius(a) + bounding_radius(b);
+  Manifold manifold = along_axis;
   const Distance distance = compute_distance(a, b, X_AB);
   // Bodies that lie face to face keep their whole polygon: clipping's tolerance for coincident edges left out the corner.
   const bool lying = face_to_face && distance.axis_A.dot(manifold.normal_A) > ContactTolerance::kFaceToFace &&
-                     lowest(manifold) <= distance.upper + kLying * (bounding_radius(a) + bounding_radius(b));
+                     lowest(manifold) <= distance.upper + kLying * size;
   if (!distance.overlap && lying) {
     set_deepest(manifold, distance.upper);
     return manifold;
   }
   const Vec3 middle_A = 0.5 * (distance.a_A + distance.b_A);
-  if (distance.overlap || distance.upper <= separation + rounding) {
+  if (distance.overlap || distance.upper <= separation + kRounding * size) {
     if (manifold.count == 0)
       return single_point(manifold.normal_A, middle_A, separation, margin, name_corners());
     set_deepest(manifold, separation);

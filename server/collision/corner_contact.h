@@ -9,11 +9,16 @@
 
 namespace tumble {
 
-/// `manifold` was made along an axis that separates by `separation` [m]. Overlapping, or if its lowest point is that near,
-/// it is returned with this separation at its lowest point; else the contact of the closest points, or none if these are
-/// beyond the margin. `face_to_face`: it was clipped with the tolerance for bodies that lie so, and may have missed its
-/// lowest point by that; then its polygon stays. Updates the cache's axis.
-Manifold contact_of_closest_points(Manifold manifold, double separation, bool face_to_face, const Shape& a,
-                                   const Shape& b, const Pose& X_AB, double margin, PairCache& cache);
+/// `manifold` was made along an axis that separates by `separation` [m], of bodies whose radii add up to `size` [m].
+/// Overlapping, or if its lowest point is that near, this point gets the separation: true. False: the axis is not the
+/// whole truth, ask for the closest points.
+bool touches_along_axis(Manifold& manifold, double separation, double size);
+
+/// Such a manifold that does not: the contact of the closest points, or none if these are beyond the margin.
+/// `face_to_face`: it was clipped with the tolerance for bodies that lie so, and may have missed its lowest point by
+/// that; then its polygon stays. Updates the cache's axis.
+Manifold contact_of_closest_points(const Manifold& along_axis, double separation, bool face_to_face,
+                                   const Shape& a, const Shape& b, const Pose& X_AB, double margin,
+                                   PairCache& cache);
 
 }  // namespace tumble

@@ -7,19 +7,6 @@
 
 namespace tumble {
 
-void ManifoldBuilder::add(const Vec3& p_A, double separation, std::uint32_t feature) {
-  if (!(separation <= margin_)) return;
-  // Of two merged points the first keeps its place, so that rounding can't move it; the depth is that of the deeper.
-  for (int i = 0; i < count_; ++i) {
-    ManifoldPoint& kept = points_[static_cast<std::size_t>(i)];
-    if ((kept.p_A - p_A).squaredNorm() >= merge_ * merge_) continue;
-    kept.separation = std::min(kept.separation, separation);
-    return;
-  }
-  if (count_ == kCapacity) reduce();
-  points_[static_cast<std::size_t>(count_++)] = {p_A, separation, feature};
-}
-
 void ManifoldBuilder::reduce() {
   std::array<double, kCapacity> distance2;
   distance2.fill(std::numeric_limits<double>::infinity());
@@ -46,17 +33,6 @@ Manifold ManifoldBuilder::finish() {
   manifold.normal_A = normal_A_;
   manifold.count = count_;
   for (std::size_t i = 0; i < static_cast<std::size_t>(count_); ++i) manifold.points[i] = points_[i];
-  return manifold;
-}
-
-Manifold single_point(const Vec3& normal_A, const Vec3& p_A, double separation, double margin,
-                      std::uint32_t feature) {
-  Manifold manifold;
-  manifold.normal_A = normal_A;
-  if (separation <= margin) {
-    manifold.count = 1;
-    manifold.points[0] = {p_A, separation, feature};
-  }
   return manifold;
 }
 

@@ -27,7 +27,18 @@ class ManifoldBuilder {
   ManifoldBuilder(const Vec3& normal_A, double margin, double merge)
       : normal_A_(normal_A), margin_(margin), merge_(merge) {}
 
-  void add(const Vec3& p_A, double separation, std::uint32_t feature);
+  void add(const Vec3& p_A, double separation, std::uint32_t feature) {
+    if (!(separation <= margin_)) return;
+    // Of two merged points the first keeps its place, so that rounding can't move it; the depth is that of the deeper.
+    for (int i = 0; i < count_; ++i) {
+      ManifoldPoint& kept = points_[static_cast<std::size_t>(i)];
+      if ((kept.p_A - p_A).squaredNorm() >= merge_ * merge_) continue;
+      kept.separation = std::min(kept.separation, separation);
+      return;
+    }
+    if (count_ == kCapacity) reduce();
+    points_[static_cast<std::size_t>(count_++)] = {p_A, separation, feature};
+  }
   int count() const { return count_; }
   /// At most eight points: the deepest, then always the one furthest from those kept.
   Manifold finish();
@@ -43,8 +54,16 @@ class ManifoldBuilder {
 };
 
 /// A manifold of one point, or none if it is further than the margin.
-Manifold single_point(const Vec3& normal_A, const Vec3& p_A, double separation, double margin,
-                      std::uint32_t feature);
+inline Manifold single_point(const Vec3& normal_A, const Vec3& p_A, double separation, double margin,
+                             std::uint32_t feature) {
+  Manifold manifold;
+  manifold.normal_A = normal_A;
+  if (separation <= margin) {
+    manifold.count = 1;
+    manifold.points[0] = {p_A, separation, feature};
+  }
+  return manifold;
+}
 
 /// Gives the lowest point this separation [m]: that of the axis, which clipping knows only up to its tolerances.
 void set_deepest(Manifold& manifold, double separation);

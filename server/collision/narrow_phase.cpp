@@ -89,31 +89,35 @@ class Query {
   Manifold run(const PairFunction& function) {
     const bool was_near = cache_.axis_A.squaredNorm() > 0.0 && cache_.gap <= margin_;
     if (stays_beyond_by_motion()) return ++counters_.motion_bound, Manifold{};
-    error_ = kRounding * (bounding_radius(a_) + radius_b_ + X_AB_.p.norm());
     if (beyond_on_cached_axis()) return ++counters_.cached_axis, Manifold{};
     if (options_.use_gjk && function.gjk_first && !was_near && beyond_by_gjk())
       return ++counters_.gjk, Manifold{};
+    return find_exactly(function);
+  }
+
+ private:
+  Manifold find_exactly(const PairFunction& function) {
     ++counters_.exact;
-    cache_.slack = options_.use_cached_facet ? cache_.slack - 4.0 * moved_by() : -1.0;
+    if (!options_.use_cached_facet) cache_.slack = -1.0;
+    if (cache_.slack >= 0.0) cache_.slack -= 4.0 * moved_by();
     if (cache_.slack >= 0.0) ++counters_.facet_kept;
     const Manifold manifold = function.exact(a_, b_, X_AB_, margin_, cache_);
     remember_pose();
     return manifold;
   }
 
- private:
   /// The gap changes exactly with the translation along the axis, and at most by the turn of B's furthest point.
   bool stays_beyond_by_motion() {
-    radius_b_ = bounding_radius(b_);
     if (!options_.use_motion_bound || cache_.gap <= margin_) return false;
+    const double radius_b = bounding_radius(b_);
     const double bound =
-        cache_.gap + cache_.axis_A.dot(X_AB_.p - cache_.p_AB) - turned_by(X_AB_.q, cache_.q_AB) * radius_b_;
-    return bound > margin_ + kRounding * (X_AB_.p.norm() + radius_b_);
+        cache_.gap + cache_.axis_A.dot(X_AB_.p - cache_.p_AB) - turned_by(X_AB_.q, cache_.q_AB) * radius_b;
+    return bound > margin_ + kRounding * (X_AB_.p.norm() + radius_b);
   }
 
   bool beyond_on_cached_axis() {
     if (!options_.use_cached_axis || cache_.gap <= 0.0) return false;
-    const double gap = separation_along(a_, b_, rotation_matrix(X_AB_.q), X_AB_.p, cache_.axis_A) - error_;
+    const double gap = separation_along(a_, b_, rotation_matrix(X_AB_.q), X_AB_.p, cache_.axis_A) - error();
     if (gap <= margin_) return false;
     remember_gap(cache_.axis_A, gap);
     return true;
@@ -134,8 +138,11 @@ class Query {
   /// No point of B is further from where it was at the last query; exactly 0 if the pose is the same to the bit.
   double moved_by() const {
     if (X_AB_.p == cache_.p_AB && X_AB_.q.coeffs() == cache_.q_AB.coeffs()) return 0.0;
-    return (X_AB_.p - cache_.p_AB).norm() + turned_by(X_AB_.q, cache_.q_AB) * radius_b_ + error_;
+    return (X_AB_.p - cache_.p_AB).norm() + turned_by(X_AB_.q, cache_.q_AB) * bounding_radius(b_) + error();
   }
+
+  /// Of a separation [m].
+  double error() const { return kRounding * (bounding_radius(a_) + bounding_radius(b_) + X_AB_.p.norm()); }
 
   void remember_gap(const Vec3& axis_A, double gap) {
     cache_.axis_A = axis_A;
@@ -154,21 +161,19 @@ class Query {
   const NarrowPhaseOptions& options_;
   PairCache& cache_;
   NarrowPhaseCounters& counters_;
-  double radius_b_ = 0.0, error_ = 0.0;  // [m]
 };
 
 Manifold collide_in_order(const Shape& a, const Shape& b, const Pose& X_AB, double margin,
                           const NarrowPhaseOptions& options, PairCache& cache, NarrowPhaseCounters& counters,
                           std::uint32_t part) {
-  if (const TriangleSurface* surface = surface_of(b)) {
-    ++counters.triangles;
-    ++counters.closed_form;
-    return collide_triangle(a, *surface, part, X_AB, margin);
-  }
   const PairFunction& function = kMatrix[a.index()][b.index()];
   if (function.exact != nullptr) return Query(a, b, X_AB, margin, options, cache, counters).run(function);
   ++counters.closed_form;
-  return function.closed_form != nullptr ? function.closed_form(a, b, X_AB, margin) : Manifold{};
+  if (function.closed_form != nullptr) return function.closed_form(a, b, X_AB, margin);
+  const TriangleSurface* surface = surface_of(b);
+  if (surface == nullptr) return {};
+  ++counters.triangles;
+  return collide_triangle(a, *surface, part, X_AB, margin);
 }
 
 /// Shapes of one type have no order in the matrix. Theirs is decided once and then kept: while two equal bodies turn

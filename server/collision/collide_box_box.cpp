@@ -218,14 +218,24 @@ Manifold cross_edges(const BoxPair& pair, const Axis& axis, double margin) {
                                name_crossing(a.tail, a.head, b.tail, b.head));
 }
 
-Manifold make_manifold(const BoxPair& pair, const Axis& axis, double margin, bool& face_to_face) {
+Manifold make_manifold(const BoxPair& pair, const Axis& axis, const BoxFace& face_a, const BoxFace& face_b,
+                       double margin) {
+  const bool flat_a = face_a.cosine > kFlat, flat_b = face_b.cosine > kFlat;
+  if (axis.kind == Axis::Kind::edges && !(flat_a && flat_b)) return cross_edges(pair, axis, margin);
+  return clip_faces(pair, axis, face_a, face_b, axis.kind == Axis::Kind::face_a || flat_a, margin);
+}
+
+/// The contact along the axis that separates most, by at most the margin.
+Manifold touch_along(const BoxPair& pair, const Axis& axis, const Pose& X_AB, double margin,
+                     PairCache& cache) {
   const BoxFace face_a = BoxFace::towards(axis.normal_A);
   const BoxFace face_b = BoxFace::towards(pair.R.transpose() * -axis.normal_A);
-  face_to_face = lie_face_to_face(face_a, face_b);
-  const bool flat = face_a.cosine > kFlat && face_b.cosine > kFlat;
-  if (axis.kind == Axis::Kind::edges && !flat) return cross_edges(pair, axis, margin);
-  return clip_faces(pair, axis, face_a, face_b, axis.kind == Axis::Kind::face_a || face_a.cosine > kFlat,
-                    margin);
+  Manifold manifold = make_manifold(pair, axis, face_a, face_b, margin);
+  if (!touches_along_axis(manifold, axis.separation, pair.a.norm() + pair.b.norm())) {
+    manifold = contact_of_closest_points(manifold, axis.separation, lie_face_to_face(face_a, face_b),
+                                         Box{pair.a}, Box{pair.b}, X_AB, margin, cache);
+  }
+  return manifold;
 }
 
 }  // namespace
@@ -243,13 +253,7 @@ Manifold collide_box_box(const Box& a, const Box& b, const Pose& X_AB, double ma
   cache.axis_A = best.normal_A;
   cache.gap = best.separation;
   if (best.separation > margin) return {};
-  bool face_to_face = false;
-  Manifold manifold = make_manifold(pair, best, margin, face_to_face);
-  const double size = pair.a.norm() + pair.b.norm();
-  if (!touches_along_axis(manifold, best.separation, size)) {
-    manifold = contact_of_closest_points(manifold, best.separation, face_to_face, a, b, X_AB, margin, cache);
-  }
-  return manifold;
+  return touch_along(pair, best, X_AB, margin, cache);
 }
 
 }  // namespace tumble

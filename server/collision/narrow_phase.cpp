@@ -201,12 +201,11 @@ Manifold collide(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X
                  const NarrowPhaseOptions& options, PairCache& cache, NarrowPhaseCounters& counters,
                  std::uint32_t part) {
   ++counters.queries;
-  if (!runs_backwards(a, X_WA, b, X_WB, cache)) {
-    return collide_in_order(a, b, relative_pose(X_WA, X_WB), margin, options, cache, counters, part);
-  }
-  const Pose X_BA = relative_pose(X_WB, X_WA);
-  Manifold manifold = collide_in_order(b, a, X_BA, margin, options, cache, counters, part);
-  swap_shapes(manifold, X_BA);
+  const bool backwards = runs_backwards(a, X_WA, b, X_WB, cache);
+  const Shape &first = backwards ? b : a, &second = backwards ? a : b;
+  const Pose X_12 = backwards ? relative_pose(X_WB, X_WA) : relative_pose(X_WA, X_WB);
+  Manifold manifold = collide_in_order(first, second, X_12, margin, options, cache, counters, part);
+  if (backwards) swap_shapes(manifold, X_12);
   return manifold;
 }
 

@@ -67,7 +67,7 @@ struct Names {
 };
 
 void add_options(CLI::App& app, Arguments& a, Names& names) {
-  auto* scene = app.add_option("scene", a.scene, "Scene to serve, an SDF file (default: the demo pile)");
+  auto* scene = app.add_option("scene", a.scene, "Scene to serve, an SDF file (default: the demo pyramid)");
   app.add_option("--demo", a.demo, "Built-in scene: " + join_demo_names())
       ->check(demo_name())
       ->excludes(scene);

@@ -11,7 +11,7 @@ namespace tumble {
 
 struct Arguments {
   std::string scene;  ///< Path of an SDF file; empty: the demo.
-  std::string demo = "pile";
+  std::string demo = "pyramid";
   double rate = 0.0;  ///< 0: real time, 1 / time step.
   bool fast = false;
   std::int64_t steps = 0;  ///< 0: until stopped.

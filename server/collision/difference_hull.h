@@ -43,6 +43,7 @@ class DifferenceHull {
 
   /// The face that is least far out and not closed; null if there is none. While the origin is outside: the nearest.
   Face* least();
+  bool empty() const { return num_faces_ == 0; }
   bool full() const { return num_points_ == kMaxPoints; }
   /// The face through which the ray from the origin along n leaves, its `weights` set for the point where it does.
   Face pierced_by(const Vec3& n) const;

@@ -29,10 +29,13 @@ class ManifoldBuilder {
 
   void add(const Vec3& p_A, double separation, std::uint32_t feature) {
     if (!(separation <= margin_)) return;
-    // Of two merged points the first keeps its place, so that rounding can't move it; the depth is that of the deeper.
+    // Of two merged points the deeper gives its place and depth, the first its name. It also keeps its place while the
+    // other is no deeper than this share of their distance, so that rounding can't move it.
+    constexpr double kDeeper = 1e-3;
     for (int i = 0; i < count_; ++i) {
       ManifoldPoint& kept = points_[static_cast<std::size_t>(i)];
       if ((kept.p_A - p_A).squaredNorm() >= merge_ * merge_) continue;
+      if (separation < kept.separation - kDeeper * merge_) kept.p_A = p_A;
       kept.separation = std::min(kept.separation, separation);
       return;
     }

@@ -140,7 +140,15 @@ struct Meeting {
     // What is inside an outline only by its tolerance could seem deeper than the shapes are.
     const double separation = std::max(contact.separation, apart);
     lowest = std::min(lowest, separation);
-    builder.add(0.5 * (p_a + p_b) + (0.5 * (contact.rounding_a - contact.rounding_b)) * n, separation, name);
+    builder.add(middle(p_a, p_b), separation, name);
+  }
+  /// The pair that the search found: its separation is exact even where its points are not.
+  void add_deepest() {
+    lowest = contact.separation;
+    builder.add(middle(contact.p_A, contact.p_B), contact.separation, mix_features(0, 0, 7));
+  }
+  Vec3 middle(const Vec3& p_a, const Vec3& p_b) const {
+    return 0.5 * (p_a + p_b) + (0.5 * (contact.rounding_a - contact.rounding_b)) * contact.normal_A;
   }
 };
 
@@ -272,7 +280,7 @@ Manifold collect(const PatchContact& contact, double width, double margin, AddPo
   add_points(meeting);
   if (!(meeting.lowest <= contact.separation + kSame * width)) {
     builder = ManifoldBuilder(contact.normal_A, margin, merge);
-    meeting.add(contact.p_A, contact.p_B, mix_features(0, 0, 7));
+    meeting.add_deepest();
     add_points(meeting);
   }
   // A corner that is as deep within rounding is as deep.

@@ -24,6 +24,10 @@ constexpr double kFlatCurvature = 1e-13, kLevelSlope = 1e-11;
 /// ... and an optimum may bend down by this much along a level direction.
 constexpr double kBendsDown = 1e-9;
 constexpr int kNewtonSteps = 12;
+/// Pieces exchanged on the way to one optimum.
+constexpr int kPivots = 12;
+/// A weight this little below 0 is 0: where four pieces meet, as between boxes and cones in line, three carry all of it.
+constexpr double kNoWeight = 1e-9;
 constexpr double kLongestStep = 0.3;  // [rad]
 /// Newton's method squares its error: a step this short is the last [rad].
 constexpr double kConverged = 1e-8;
@@ -115,9 +119,11 @@ class Search {
     Vec3 n, u;
     double slope, second;
   };
+  std::optional<Vec3> onto_ridge(const Candidate& c, const Vec3& n_near) const;
   std::optional<Ridge> ridge_at(const Candidate& c, const Vec3& n_near) const;
   bool step_on_ridge(Candidate& c) const;
   bool step_to_face(Candidate& c) const;
+  bool include(Candidate& c, const Reach& further) const;
   std::array<double, 3> weights(const Candidate& c) const;
   void find_points(Separation& result) const;
   Separation finish();
@@ -172,21 +178,30 @@ bool Search::step_on_surface(Candidate& c) const {
   return true;
 }
 
-/// Two pieces reach equally far on a curve across e = k1 - k0; along it, u, the reach of the mixture with the weights of
-/// the edge's point nearest to the origin has the derivatives u . k and u W u - t.
-std::optional<Search::Ridge> Search::ridge_at(const Candidate& c, const Vec3& n_near) const {
-  const Vec3 k0 = point(c.pieces[0], n_near), e = point(c.pieces[1], n_near) - k0;
+/// Along the direction nearest by the two pieces reach equally far: across e = k1 - k0 as seen from n_near.
+std::optional<Vec3> Search::onto_ridge(const Candidate& c, const Vec3& n_near) const {
+  const Vec3 e = point(c.pieces[1], n_near) - point(c.pieces[0], n_near);
   const double ee = e.squaredNorm();
   if (!(ee > 0.0)) return std::nullopt;
   const Vec3 level = n_near - e * (e.dot(n_near) / ee);
   const double length = level.norm();
   if (!(length > 0.1)) return std::nullopt;
+  return Vec3(level / length);
+}
+
+/// Two pieces reach equally far on a curve across e = k1 - k0; along it, u, the reach of the mixture with the weights of
+/// the edge's point nearest to the origin has the derivatives u . k and u W u - t. Both are taken on the curve: beside it,
+/// where a long step ends, the curvature of a rim can have the other sign.
+std::optional<Search::Ridge> Search::ridge_at(const Candidate& c, const Vec3& n_near) const {
+  const std::optional<Vec3> foot = onto_ridge(c, n_near), on = foot ? onto_ridge(c, *foot) : foot;
+  if (!on) return std::nullopt;
   Ridge ridge;
-  ridge.n = level / length;
-  ridge.u = ridge.n.cross(e) / std::sqrt(ee);
-  const double weight = std::clamp(-k0.dot(e) / ee, 0.0, 1.0);
-  const double uu = (1.0 - weight) * curvature(c.pieces[0], n_near, ridge.u, ridge.u).uu +
-                    weight * curvature(c.pieces[1], n_near, ridge.u, ridge.u).uu;
+  ridge.n = *on;
+  const Vec3 k0 = point(c.pieces[0], ridge.n), e = point(c.pieces[1], ridge.n) - k0;
+  ridge.u = direction_or(ridge.n.cross(e), perpendicular_to(ridge.n));
+  const double weight = std::clamp(-k0.dot(e) / e.squaredNorm(), 0.0, 1.0);
+  const double uu = (1.0 - weight) * curvature(c.pieces[0], ridge.n, ridge.u, ridge.u).uu +
+                    weight * curvature(c.pieces[1], ridge.n, ridge.u, ridge.u).uu;
   ridge.slope = ridge.u.dot(k0);
   ridge.second = uu - ridge.n.dot(k0);
   return ridge;
@@ -238,17 +253,44 @@ bool Search::converge(Candidate& candidate) const {
   return false;
 }
 
-/// The optimum near the candidate: pieces that don't hold it are dropped. Remembered if it is better than the best.
+/// Takes a piece in that reaches further. Of four, the one is left out without which the ray along n passes best through
+/// the triangle of the others.
+bool Search::include(Candidate& c, const Reach& further) const {
+  if (c.holds(further.pieces)) return false;
+  if (c.count < 3) {
+    c.add(further.pieces);
+    return true;
+  }
+  std::size_t out = 3;
+  double most = -kInfinity;
+  for (std::size_t i = 0; i < 3; ++i) {
+    std::array<Vec3, 3> k;
+    for (std::size_t j = 0; j < 3; ++j) k[j] = j == i ? further.k() : point(c.pieces[j], c.n);
+    const std::array<double, 3> w = {c.n.dot(k[1].cross(k[2])), c.n.dot(k[2].cross(k[0])),
+                                     c.n.dot(k[0].cross(k[1]))};
+    const double least =
+        std::min({w[0] / (w[0] + w[1] + w[2]), w[1] / (w[0] + w[1] + w[2]), w[2] / (w[0] + w[1] + w[2])});
+    if (least > most) most = least, out = i;
+  }
+  if (out == 3) return false;
+  c.pieces[out] = further.pieces;
+  return true;
+}
+
+/// The optimum near the candidate: pieces that don't hold it are dropped, those that reach further taken in. Remembered if it is better than the best.
 Search::Ending Search::polish(Candidate candidate) {
-  while (converge(candidate)) {
+  for (int pivot = 0; pivot < kPivots && converge(candidate); ++pivot) {
     const Candidate before = best_;
     const Reach reached = reach(candidate.n);
     const double t = candidate.n.dot(point(candidate.pieces[0], candidate.n));
-    if (reached.h() > t + kRounding * size_) break;  // another piece reaches further
+    if (reached.h() > t + kRounding * size_) {
+      if (!include(candidate, reached)) break;
+      continue;
+    }
     const std::array<double, 3> w = weights(candidate);
     const auto least =
         static_cast<std::size_t>(std::min_element(w.begin(), w.begin() + candidate.count) - w.begin());
-    if (w[least] < 0.0) {
+    if (w[least] < -kNoWeight) {
       candidate.pieces[least] = candidate.pieces[static_cast<std::size_t>(--candidate.count)];
       continue;
     }
@@ -342,6 +384,11 @@ void Search::expand() {
 
 /// The deepest points, as the mixture of those that the origin lies behind.
 void Search::find_points(Separation& result) const {
+  if (!best_.optimal && hull_.empty()) {
+    result.p_A = a_.furthest(best_.n).p_A;
+    result.p_B = b_.furthest(-best_.n).p_A;
+    return;
+  }
   result.p_A = result.p_B = Vec3::Zero();
   if (best_.optimal) {
     const std::array<double, 3> w = weights(best_);
@@ -357,9 +404,14 @@ void Search::find_points(Separation& result) const {
     result.p_A += face.weights[i] * corner.p_A;
     result.p_B += face.weights[i] * (corner.p_A - corner.k);
   }
+  // The polytope lies inside the difference: out to the planes that touch the shapes.
+  result.p_A += best_.n.dot(a_.furthest(best_.n).p_A - result.p_A) * best_.n;
+  result.p_B += best_.n.dot(b_.furthest(-best_.n).p_A - result.p_B) * best_.n;
 }
 
 Separation Search::finish() {
+  // The first guess may already be the best direction; which pieces meet there is then not known yet.
+  if (!beyond() && !best_.optimal) polish(best_);
   Separation result;
   result.normal_A = best_.n;
   result.separation = -best_.h - rounding_;

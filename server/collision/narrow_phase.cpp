@@ -101,7 +101,7 @@ class Query {
     if (!options_.use_cached_facet) cache_.slack = -1.0;
     if (cache_.slack >= 0.0) cache_.slack -= 4.0 * moved_by();
     if (cache_.slack >= 0.0) ++counters_.facet_kept;
-    const Manifold manifold = function.exact(a_, b_, X_AB_, margin_, cache_);
+    Manifold manifold = function.exact(a_, b_, X_AB_, margin_, cache_);
     remember_pose();
     return manifold;
   }

@@ -4,23 +4,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <stdexcept>
 
 #include "collision/distance.h"
 #include "collision/ray_cast.h"
 #include "collision/shape_cast.h"
 #include "collision/surface_query.h"
+#include "world/check.h"
 
 namespace tumble {
 namespace {
-
-[[noreturn]] void refuse(const std::string& reason) {
-  throw std::invalid_argument(reason);
-}
-
-void check_finite(const char* field, const Vec3& v) {
-  if (!v.allFinite()) refuse(fmt::format("{}: must be finite ({} {} {})", field, v.x(), v.y(), v.z()));
-}
 
 Ray make_ray(const Vec3& origin, const Vec3& direction, double length) {
   check_finite("origin", origin);
@@ -35,11 +27,7 @@ void check_solid(const Shape& shape, const Pose& X_WS) {
   if (is_static_only(shape)) refuse(fmt::format("shape: a {} cannot be asked with", shape_name(shape)));
   const std::string problem = check_shape(shape);
   if (!problem.empty()) refuse(fmt::format("shape: {}", problem));
-  check_finite("position", X_WS.p);
-  const double norm2 = X_WS.q.coeffs().squaredNorm();
-  if (!(std::abs(norm2 - 1.0) < 1e-6)) {
-    refuse(fmt::format("orientation: quaternion must have length 1 (squared length {})", norm2));
-  }
+  check_pose("position", "orientation", X_WS);
 }
 
 BodyId body_of(const World& world, std::uint32_t geometry) {

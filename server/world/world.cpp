@@ -4,30 +4,15 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <stdexcept>
+
+#include "world/check.h"
 
 namespace tumble {
 namespace {
 
-[[noreturn]] void refuse(const std::string& reason) {
-  throw std::invalid_argument(reason);
-}
-
-void check_finite(const char* field, const Vec3& v) {
-  if (!v.allFinite()) refuse(fmt::format("{}: must be finite ({} {} {})", field, v.x(), v.y(), v.z()));
-}
-
 void check_range(const char* field, double value, double low, double high) {
   if (!(value >= low && value <= high))
     refuse(fmt::format("{}: must be {}..{} ({})", field, low, high, value));
-}
-
-void check_pose(const char* field, const Pose& pose) {
-  check_finite(field, pose.p);
-  const double norm = pose.q.coeffs().squaredNorm();
-  if (!(std::abs(norm - 1.0) < 1e-6)) {
-    refuse(fmt::format("{}: quaternion must have length 1 (squared length {})", field, norm));
-  }
 }
 
 /// Speeds above this [m/s, rad/s] are mistakes, not physics; it keeps one step's motion finite in every formula.
@@ -56,7 +41,7 @@ void check_velocity(const char* field, const Vec3& v) {
 }
 
 void check_place(const char* field, const Pose& pose) {
-  check_pose(field, pose);
+  check_pose(field, field, pose);
   check_range(field, pose.p.cwiseAbs().maxCoeff(), 0.0, kMaxCoordinate);
 }
 
@@ -71,7 +56,7 @@ void check_definition(const BodyDefinition& definition) {
     if (const std::string problem = check_shape(geometry.shape); !problem.empty()) {
       refuse(fmt::format("geometry '{}': {}", geometry.name, problem));
     }
-    check_pose("geometry pose", geometry.X_LS);
+    check_pose("geometry pose", "geometry pose", geometry.X_LS);
     check_material(geometry.material);
     if (definition.type != BodyType::fixed && is_static_only(geometry.shape)) {
       refuse(fmt::format("geometry '{}': a {} belongs to a static body only", geometry.name,

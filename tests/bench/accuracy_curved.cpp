@@ -27,27 +27,6 @@ constexpr Kind kKinds[] = {{"shallow", 0.2, 1.0, false, false},      {"deep", 0.
                            {"millimetres", 0.2, 1e-3, false, false}, {"kilometres", 0.2, 1e3, true, false}};
 constexpr const char* kNames[] = {"sphere", "capsule", "box", "hull", "cylinder", "cone", "ellipsoid"};
 
-Shape make_shape(RandomPose& random, int type, const Kind& kind) {
-  Vec3 size;
-  for (int i = 0; i < 3; ++i) size[i] = kind.unit * random.log_uniform(kind.least, 1.0);
-  switch (type) {
-    case 0:
-      return Sphere{size.x()};
-    case 1:
-      return Capsule{size.x(), size.y()};
-    case 2:
-      return Box{size};
-    case 3:
-      return random_hull(random, 12, size);
-    case 4:
-      return Cylinder{size.x(), size.y()};
-    case 5:
-      return Cone{size.x(), size.y()};
-    default:
-      return Ellipsoid{size};
-  }
-}
-
 Pose make_pose(RandomPose& random, const Shape& a, const Shape& b, const Kind& kind) {
   Quat q = random.rotation();
   Vec3 d = random.direction();
@@ -73,7 +52,8 @@ Row run(int type_a, int type_b, const Kind& kind, int poses) {
   NarrowPhaseCounters counters;
   Row row;
   for (int i = 0; i < poses; ++i) {
-    const Shape a = make_shape(random, type_a, kind), b = make_shape(random, type_b, kind);
+    const Shape a = random_shape(random, type_a, kind.least, kind.unit);
+    const Shape b = random_shape(random, type_b, kind.least, kind.unit);
     const Pose X_AB = make_pose(random, a, b, kind);
     const double size = bounding_radius(a) + bounding_radius(b);
     PairCache cache;

@@ -39,30 +39,10 @@ Pose place(RandomPose& random, const Shape& a, const Shape& b, Overlap overlap) 
   return {q, touching + (overlap == Overlap::apart ? gap : -gap) * d};
 }
 
-/// Random shapes of both kinds between `least` and 1 m across.
+/// Numbers of random_shape.
 struct Types {
   std::size_t a, b;
 };
-Shape random_shape(RandomPose& random, std::size_t type, double least) {
-  Vec3 size;
-  for (int i = 0; i < 3; ++i) size[i] = random.log_uniform(least, 1.0);
-  switch (type) {
-    case 0:
-      return Sphere{size.x()};
-    case 1:
-      return Capsule{size.x(), size.y()};
-    case 2:
-      return Box{size};
-    case 3:
-      return random_hull(random, 12, size);
-    case 4:
-      return Cylinder{size.x(), size.y()};
-    case 5:
-      return Cone{size.x(), size.y()};
-    default:
-      return Ellipsoid{size};
-  }
-}
 
 class EveryCurvedPair : public ::testing::TestWithParam<Types> {
  protected:

@@ -59,12 +59,7 @@ class DistanceReference {
                  long double sign) {
     for (const ConvexHull::Face& face : polytope.faces) {
       const auto loop = polytope.loop(face);
-      Vec3L n = Vec3L::Zero();
-      for (std::size_t i = 0; i < loop.size(); ++i) {
-        n += (vertices[loop[i]] - vertices[loop[0]])
-                 .cross(vertices[loop[(i + 1) % loop.size()]] - vertices[loop[0]]);
-      }
-      n.normalize();
+      const Vec3L n = face_normal_l(polytope, face, vertices);
       bool inside = true;
       for (std::size_t i = 0; i < loop.size() && inside; ++i) {
         const Vec3L& tail = vertices[loop[i]];

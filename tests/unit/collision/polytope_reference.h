@@ -17,6 +17,18 @@ inline Mat3L rotation_matrix_l(const Quat& q) {
   return Eigen::Quaternion<long double>(q.cast<long double>()).normalized().toRotationMatrix();
 }
 
+/// Rebuilt from the vertices, placed anywhere: the polytope's own normals are rounded to 64 bits.
+inline Vec3L face_normal_l(const Polytope& polytope, const ConvexHull::Face& face,
+                           const std::vector<Vec3L>& vertices) {
+  const auto loop = polytope.loop(face);
+  Vec3L n = Vec3L::Zero();
+  for (std::size_t i = 0; i < loop.size(); ++i) {
+    n += (vertices[loop[i]] - vertices[loop[0]])
+             .cross(vertices[loop[(i + 1) % loop.size()]] - vertices[loop[0]]);
+  }
+  return n.normalized();
+}
+
 class PolytopeReference {
  public:
   PolytopeReference(const Polytope& a, const Pose& X_WA, const Polytope& b, const Pose& X_WB) {
@@ -58,16 +70,9 @@ class PolytopeReference {
     axes_.push_back(n);
     axes_.push_back(-n);
   }
-  /// The axes are rebuilt from the vertices: the polytope's own normals are rounded to 64 bits.
   void add_axes(const Polytope& polytope, const std::vector<Vec3L>& vertices) {
     for (const ConvexHull::Face& face : polytope.faces) {
-      const auto loop = polytope.loop(face);
-      Vec3L n = Vec3L::Zero();
-      for (std::size_t i = 0; i < loop.size(); ++i) {
-        n += (vertices[loop[i]] - vertices[loop[0]])
-                 .cross(vertices[loop[(i + 1) % loop.size()]] - vertices[loop[0]]);
-      }
-      add_axis(n.normalized());
+      add_axis(face_normal_l(polytope, face, vertices));
     }
     for (const ConvexHull::Edge& edge : polytope.edges)
       edges_.push_back(vertices[edge.head] - vertices[edge.tail]);

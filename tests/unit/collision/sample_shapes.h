@@ -22,6 +22,28 @@ inline std::vector<Shape> random_shapes(RandomPose& random, double low = 0.3, do
   return shapes;
 }
 
+/// Type 0 to 6: sphere, capsule, box, hull, cylinder, cone, ellipsoid; each size between `least` and 1 times `unit` [m].
+inline Shape random_shape(RandomPose& random, std::size_t type, double least, double unit = 1.0) {
+  Vec3 size;
+  for (int i = 0; i < 3; ++i) size[i] = unit * random.log_uniform(least, 1.0);
+  switch (type) {
+    case 0:
+      return Sphere{size.x()};
+    case 1:
+      return Capsule{size.x(), size.y()};
+    case 2:
+      return Box{size};
+    case 3:
+      return random_hull(random, 12, size);
+    case 4:
+      return Cylinder{size.x(), size.y()};
+    case 5:
+      return Cone{size.x(), size.y()};
+    default:
+      return Ellipsoid{size};
+  }
+}
+
 /// Their distances converge from both sides and stop at a hair, where those of flat and round shapes are known to rounding.
 inline bool is_curved(const Shape& shape) {
   return std::holds_alternative<Cylinder>(shape) || std::holds_alternative<Cone>(shape) ||

@@ -5,6 +5,7 @@
 
 #include "collision/manifold_builder.h"
 #include "collision/narrow_phase.h"
+#include "math/rotation.h"
 
 namespace tumble {
 namespace {
@@ -14,12 +15,6 @@ constexpr double kSameNormal = 1e-6;
 
 bool same_direction(const Vec3& a, const Vec3& b) {
   return (a - b).squaredNorm() <= kSameNormal * kSameNormal;
-}
-
-/// Rotation that takes z to the unit vector n.
-Quat turn_z_to(const Vec3& n) {
-  const Quat half(1.0 + n.z(), -n.y(), n.x(), 0.0);
-  return half.squaredNorm() > 1e-12 ? normalized(half) : Quat(0, 1, 0, 0);
 }
 
 Manifold ask(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB, double margin) {
@@ -52,7 +47,7 @@ bool allows(const PlacedTriangle& t, const Vec3& c) {
 
 /// What lies over the triangle of the contact with its plane, and, if it is not all seams, what it meets of the body.
 Manifold lie_on_triangle(const Shape& a, const PlacedTriangle& t, const Manifold& met, double margin) {
-  const Pose X_AH{turn_z_to(t.normal), t.corner[0]};
+  const Pose X_AH{rotation_to_normal(t.normal), t.corner[0]};
   const Manifold plane = ask(HalfSpace{}, X_AH, a, Pose{}, margin);
   const ContactTolerance tolerance = ContactTolerance::of(t.width());
   ManifoldBuilder builder(-t.normal, margin, tolerance.merge);

@@ -1,8 +1,6 @@
 // See corner_contact.h. The closest points come from distance.h, between two bounds that meet at round-off.
 #include "collision/corner_contact.h"
 
-#include <limits>
-
 #include "collision/distance.h"
 #include "collision/feature_name.h"
 #include "collision/manifold_builder.h"
@@ -16,19 +14,11 @@ constexpr double kRounding = 1e-14;
 /// width times their tilt.
 constexpr double kLying = 1e-6;
 
-double lowest(const Manifold& manifold) {
-  double least = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < static_cast<std::size_t>(manifold.count); ++i) {
-    least = std::min(least, manifold.points[i].separation);
-  }
-  return least;
-}
-
 }  // namespace
 
 bool touches_along_axis(Manifold& manifold, double separation, double size) {
   const double rounding = kRounding * size;
-  if (separation >= -rounding && lowest(manifold) > separation + rounding) return false;
+  if (separation >= -rounding && least_separation(manifold) > separation + rounding) return false;
   set_deepest(manifold, separation);
   return true;
 }
@@ -41,7 +31,7 @@ Manifold contact_of_closest_points(const Manifold& along_axis, double separation
   const Distance distance = compute_distance(a, b, X_AB);
   // Bodies that lie face to face keep their whole polygon: clipping's tolerance for coincident edges left out the corner.
   const bool lying = face_to_face && distance.axis_A.dot(manifold.normal_A) > ContactTolerance::kFaceToFace &&
-                     lowest(manifold) <= distance.upper + kLying * size;
+                     least_separation(manifold) <= distance.upper + kLying * size;
   if (!distance.overlap && lying) {
     set_deepest(manifold, distance.upper);
     return manifold;

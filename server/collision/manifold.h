@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <limits>
 
 #include "math/types.h"
 
@@ -26,12 +27,17 @@ struct Manifold {
   std::array<ManifoldPoint, kMaxManifoldPoints> points;
 };
 
+/// Smallest separation of the manifold's points [m]; infinite if it has none.
+inline double least_separation(const Manifold& manifold) {
+  double least = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < manifold.count; ++i)
+    least = std::min(least, manifold.points[static_cast<std::size_t>(i)].separation);
+  return least;
+}
+
 /// Largest overlap of the manifold's points [m], >= 0.
 inline double deepest(const Manifold& manifold) {
-  double depth = 0.0;
-  for (int i = 0; i < manifold.count; ++i)
-    depth = std::max(depth, -manifold.points[static_cast<std::size_t>(i)].separation);
-  return depth;
+  return std::max(0.0, -least_separation(manifold));
 }
 
 }  // namespace tumble

@@ -14,8 +14,8 @@ struct Rope {
 /// The row between the anchors row.rA, row.rB [m from the centres of mass, in W, at the start of the step] over a step h,
 /// in the direction that brings the anchors together; direction and arms become those predicted for the middle of the
 /// step. Way left: gap = (length^2 - distance^2) / (2 |middle|). Swinging taut: (u0 + u)/2 >= -gap/h; snapping taut:
-/// u >= -gap/h, or C_r times the stretching speed. Over-long: taken back at most as `settings` say. False (no row) if it cannot become taut within the step at the velocities of A and B,
-/// or the anchors coincide.
+/// u >= -gap/h, or C_r times the stretching speed. Over-long: taken back at most as `settings` say. False (no row) if it
+/// cannot become taut within the step at the velocities of A and B, or the anchors coincide.
 bool make_rope_row(const Rope& rope, const SolverBody& A, const SolverBody& B, double h,
                    const BoundSettings& settings, ScalarRow& row);
 

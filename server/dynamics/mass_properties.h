@@ -18,8 +18,8 @@ struct Inertia {
 };
 
 /// Inertia of a solid of uniform density [kg/m^3], in the shape's frame S. Sphere 2/5 m r^2 and box 1/12 m (a^2+b^2)
-/// as on the course's slide; cylinder, cone and ellipsoid in closed form; capsule from cylinder and half-spheres; hull exactly, as a sum of tetrahedra (Tonon
-/// 2004). Throws std::invalid_argument for a half-space, which has no mass.
+/// as on the course's slide; cylinder, cone and ellipsoid in closed form; capsule from cylinder and half-spheres; hull
+/// exactly, as a sum of tetrahedra (Tonon 2004). Throws std::invalid_argument for a half-space, which has no mass.
 Inertia compute_inertia(const Shape& shape, double density);
 
 /// The same solid described in another frame F, S at X_FS.

@@ -121,4 +121,11 @@ Quat exp_map(const Vec3& r) {
   return Quat(sc.cos, v.x(), v.y(), v.z());
 }
 
+Quat rotation_to_normal(const Vec3& n) {
+  const double across2 = n.x() * n.x() + n.y() * n.y();
+  if (n.z() < 0.0 && across2 < 1e-32) return Quat(0.0, 1.0, 0.0, 0.0);
+  const double w = n.z() < 0.0 ? across2 / (1.0 - n.z()) : 1.0 + n.z();  // 1 + n_z without its cancellation
+  return normalized(Quat(w, -n.y(), n.x(), 0.0));
+}
+
 }  // namespace tumble

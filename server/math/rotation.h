@@ -24,6 +24,9 @@ double mean_decay(double x);
 /// Quaternion of the rotation vector r [rad]: (cos |r|/2, sin(|r|/2) r/|r|). Unit to round-off, exact at r = 0.
 Quat exp_map(const Vec3& r);
 
+/// Rotation that turns z to the unit vector n the shortest way (about x where n = -z).
+Quat rotation_to_normal(const Vec3& n);
+
 /// Rotation matrix R from its unit quaternion, orthonormal to round-off for a unit q.
 inline Mat3 rotation_matrix(const Quat& q) {
   return q.toRotationMatrix();

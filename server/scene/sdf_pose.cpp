@@ -31,13 +31,6 @@ Quat rotation_from_rpy(double roll, double pitch, double yaw) {
               r.cos * p.sin * y.cos + r.sin * p.cos * y.sin, r.cos * p.cos * y.sin - r.sin * p.sin * y.cos);
 }
 
-Quat rotation_to_normal(const Vec3& n) {
-  const double across2 = n.x() * n.x() + n.y() * n.y();
-  if (n.z() < 0.0 && across2 < 1e-32) return Quat(0.0, 1.0, 0.0, 0.0);
-  const double w = n.z() < 0.0 ? across2 / (1.0 - n.z()) : 1.0 + n.z();  // 1 + n_z without its cancellation
-  return normalized(Quat(w, -n.y(), n.x(), 0.0));
-}
-
 Pose chained(const std::optional<Pose>& X_AB, const std::optional<Pose>& X_BC) {
   if (!X_AB) return X_BC.value_or(Pose{});
   if (!X_BC) return *X_AB;

@@ -16,9 +16,6 @@ Pose read_pose(SdfElement& pose);
 /// Rz(yaw) Ry(pitch) Rx(roll), angles in [rad].
 Quat rotation_from_rpy(double roll, double pitch, double yaw);
 
-/// Rotation that turns z to the unit vector n the shortest way (about x where n = -z).
-Quat rotation_to_normal(const Vec3& n);
-
 /// q itself where |q|^2 is 1 to 1e-14, else q / |q|: what was normalised once keeps its bits for ever.
 Quat unit_or_same(const Quat& q);
 

@@ -61,14 +61,6 @@ bool same_bits(const Manifold& m, const Manifold& n) {
   return true;
 }
 
-double least_separation(const Manifold& manifold) {
-  double least = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < manifold.count; ++i) {
-    least = std::min(least, manifold.points[static_cast<std::size_t>(i)].separation);
-  }
-  return least;
-}
-
 /// How far a hull's vertices lie below its faces [m]: coplanar within this, they were merged, and planes and vertices are
 /// two descriptions of the body.
 double unevenness(const Shape& shape) {

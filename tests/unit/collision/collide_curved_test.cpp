@@ -20,12 +20,6 @@ Manifold query(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_W
   return collide(a, X_WA, b, X_WB, margin, {}, cache, counters);
 }
 
-double least_separation(const Manifold& m) {
-  double least = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < m.count; ++i) least = std::min(least, m.points[static_cast<std::size_t>(i)].separation);
-  return least;
-}
-
 enum class Overlap { shallow, deep, apart };
 
 /// B at a random place: it touches A along a random direction, and is moved from there.

@@ -9,19 +9,11 @@
 namespace tumble::test {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
 Manifold query(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB, double margin,
                const NarrowPhaseOptions& options = {}) {
   PairCache cache;
   NarrowPhaseCounters counters;
   return collide(a, X_WA, b, X_WB, margin, options, cache, counters);
-}
-
-double least_separation(const Manifold& m) {
-  double least = kInfinity;
-  for (int i = 0; i < m.count; ++i) least = std::min(least, m.points[static_cast<std::size_t>(i)].separation);
-  return least;
 }
 
 std::vector<Shape> one_of_each() {

@@ -107,6 +107,12 @@ double mean_decay(double x) {
   return (x < 0.34 ? -expm1_reduced(-x) : 1.0 - exp_decay(-x)) / x;
 }
 
+double mean_loss(double x) {
+  assert(x >= 0.0);
+  if (x < 0.34) return horner(kExp, -x);  // e^-x = 1 - x + x^2 (1/2 - x (1/3! - ...))
+  return (1.0 - mean_decay(x)) / x;
+}
+
 Quat exp_map(const Vec3& r) {
   const double x2 = 0.25 * r.squaredNorm();  // half angle, squared
   if (x2 < 0.04) {

@@ -21,6 +21,9 @@ double exp_decay(double x);
 /// (1 - e^-x) / x for x >= 0, the mean of a decay over its interval; 1 at x = 0, no cancellation.
 double mean_decay(double x);
 
+/// (x - 1 + e^-x) / x^2 for x >= 0, what a decay has lost on average; 1/2 at x = 0, no cancellation.
+double mean_loss(double x);
+
 /// Quaternion of the rotation vector r [rad]: (cos |r|/2, sin(|r|/2) r/|r|). Unit to round-off, exact at r = 0.
 Quat exp_map(const Vec3& r);
 

@@ -12,22 +12,11 @@
 namespace tumble {
 namespace {
 
-MassProperties principal_body(const Vec3& I) {
-  MassProperties mass;
-  mass.mass = 1.0;
-  mass.inv_mass = 1.0;
-  mass.I = I;
-  mass.inv_I = I.cwiseInverse();
-  return mass;
-}
-
 /// The body's motion at the end of the case, in steps of h.
 Motion run(const RotationCase& c, IntegrateFunction integrate, double h) {
   const MassProperties mass = principal_body(c.I);
-  Motion body;
-  const Vec3 L0 = c.I.cwiseProduct(c.w0);
-  body.L = L0;
-  body.w = c.w0;
+  Motion body = start_of(c);
+  const Vec3 L0 = body.L;
   const int steps = static_cast<int>(std::lround(c.time / h));
   for (int i = 0; i < steps; ++i) {
     // From the start of the case, so that no rounding adds up in the given path; `course` has a momentum of its own.

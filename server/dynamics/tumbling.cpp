@@ -1,0 +1,253 @@
+// See tumbling.h. Every difference of like quantities that the textbook forms contain is avoided; where one remains (the
+// bracket of 1 - m) it is the distance to the separatrix, which is in the data.
+#include "dynamics/tumbling.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+
+#include "math/elliptic.h"
+#include "math/rotation.h"
+
+namespace tumble {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr double kPiHi = 3.14159265346825122834;  // 33 bits: products with whole numbers below 2^20 are exact
+constexpr double kPiLo = 1.21542010130123846498e-10;
+
+/// What a term of a series must exceed to count.
+constexpr double kNothing = 1e-18;
+
+/// 1 - m is at least this: nothing underflows later, and a body this near the separatrix stays there for 300 turns.
+constexpr double kSmallestM1 = 1e-280;
+
+double sign(double x) {
+  return std::signbit(x) ? -1.0 : 1.0;
+}
+
+/// cos and sin of half the angle whose cosine and sine are given; accurate for cosine >= 0, |angle| < pi.
+SinCos half_angle(double sine, double cosine) {
+  const double c = std::sqrt(0.5 * (1.0 + cosine));
+  return {0.5 * sine / c, c};
+}
+
+}  // namespace
+
+double Tumbling::compute_A(const Vec3& I, const Vec3& w) {
+  return I[0] * std::abs(I[0] - I[2]) * w[0] * w[0] + I[1] * std::abs(I[1] - I[2]) * w[1] * w[1];
+}
+
+double Tumbling::compute_C(const Vec3& I, const Vec3& w) {
+  return I[1] * std::abs(I[0] - I[1]) * w[1] * w[1] + I[2] * std::abs(I[0] - I[2]) * w[2] * w[2];
+}
+
+Tumbling::Invariants Tumbling::compute_invariants(const Vec3& I, const Vec3& w, double L) {
+  Invariants c;
+  const double d12 = std::abs(I[0] - I[1]), d13 = std::abs(I[0] - I[2]), d23 = std::abs(I[1] - I[2]);
+  const double sigma = I[0] > I[2] ? 1.0 : -1.0;
+  c.A = compute_A(I, w);
+  c.C = compute_C(I, w);
+  c.m = std::min(c.A * d12 / (c.C * d23), 1.0);
+  c.m1 =
+      std::clamp(d13 * (I[2] * d23 * w[2] * w[2] - I[0] * d12 * w[0] * w[0]) / (c.C * d23), kSmallestM1, 1.0);
+  const double rate = std::sqrt(c.C * d23 / (I[0] * I[1] * I[2]));
+  c.w_p = -sigma * rate;
+  c.w_max = {std::sqrt(c.A / (I[0] * d13)), std::sqrt(c.A / (I[1] * d23)), std::sqrt(c.C / (I[2] * d13))};
+
+  const CompleteIntegrals complete = compute_complete_integrals(c.m, c.m1);
+  c.K = complete.K;
+  c.excess = complete.excess;
+  c.K1 = compute_complete_integrals(c.m1, c.m).K;
+
+  double sn = w[1] / c.w_max[1], cn = w[0] / c.w_max[0];
+  const double length = std::sqrt(sn * sn + cn * cn);
+  sn /= length;
+  cn /= length;
+  // cn^2 + m1 sn^2 = 1 - m sn^2 = dn^2.
+  c.u0 = sn * compute_carlson_integrals(cn * cn, cn * cn + c.m1 * sn * sn).R_F;
+  if (cn < 0.0) c.u0 = sign(sn) * 2.0 * c.K - c.u0;
+
+  const double sin2 = d23 * I[0] / (I[1] * d13), cos2 = d12 * I[2] / (I[1] * d13);
+  const CarlsonIntegrals incomplete = compute_carlson_integrals(cos2, cos2 + c.m * sin2);
+  const double sine = std::sqrt(sin2);
+  c.F = sine * incomplete.R_F;
+  c.E_v = c.F - (c.m1 / 3.0) * (sin2 * sine) * incomplete.R_D;
+  c.precession = L / I[1] + sigma * rate * (c.E_v - c.excess * c.F - 0.5 * kPi / c.K);
+  return c;
+}
+
+Tumbling::Tumbling(const Vec3& I, const Vec3& w, double L) {
+  const Invariants c = compute_invariants(I, w, L);
+  const Vec3 l(I[0] * c.w_max[0], I[1] * c.w_max[1], I[2] * c.w_max[2]);
+  circular_ = c.m <= 0.5;
+  z0_ = 0.5 * kPi * c.u0 / c.K;
+  z_rate_ = 0.5 * kPi * c.w_p / c.K;
+  half_precession_ = 0.5 * c.precession;
+  if (circular_) {
+    set_circular(c, l);
+  } else {
+    set_hyperbolic(c, l);
+  }
+}
+
+/// With the nome nu <= e^-pi: theta_1, 2, 3 by their Fourier series, theta_4(z + iy) as the product of its factor that
+/// may vanish, 1 - W e^{-2iz} with W = e^{-pi F/K}, and the series of the rest.
+void Tumbling::set_circular(const Invariants& c, const Vec3& l) {
+  const double nu = exp_decay(-kPi * c.K1 / c.K);
+  Coefficients g{}, e{};  // nu^(n^2), nu^(n(n+1))
+  double power = 1.0, sum2 = 0.0, sum3 = -1.0;
+  for (int n = 0; n < kTerms; ++n) {
+    g[n] = n == 0 ? 1.0 : e[n - 1] * power;
+    e[n] = g[n] * power;
+    power *= nu;
+    sum2 += e[n];
+    sum3 += 2.0 * g[n];
+    if (g[n] >= kNothing) terms_ = std::min(n + 1, 4);
+  }
+  const double kappa = std::sqrt(std::sqrt(c.m1)), ratio = sum3 / sum2;
+  const double x = kPi * c.F / c.K;
+  W_ = exp_decay(-x);
+  loss_ = x * mean_decay(x);
+  double rest = 0.0;  // sum over k >= n of (-1)^k nu^(k(k+1))
+  for (int n = kTerms - 1; n >= 0; --n) {
+    const double alternating = n % 2 == 0 ? 1.0 : -1.0;
+    rest += alternating * e[n];
+    if (n >= terms_) continue;
+    alpha_[n] = alternating * l[1] * ratio * e[n];
+    beta_[n] = l[0] * kappa * ratio * e[n];
+    gamma_[n] = (n == 0 ? 1.0 : 2.0) * l[2] * kappa * g[n];
+    re_[n] = rest;
+  }
+  double falling = 1.0, rising = 1.0;  // W^n, W^-n
+  for (int n = 1; n < terms_; ++n) {
+    falling *= W_;
+    rising /= W_;
+    im_[n] = re_[n] * (rising - falling);
+    re_[n] *= rising + falling;
+  }
+}
+
+Tumbling::Thetas Tumbling::circular(double z) const {
+  const auto [s, c] = sincos(z);
+  const double c2 = (c - s) * (c + s), s2 = 2.0 * s * c;
+  Thetas theta{alpha_[0] * s, beta_[0] * c, gamma_[0], 0.0, 0.0, 0.0};
+  double re = re_[0], im = 0.0;
+  double cos_even = 1.0, sin_even = 0.0, cos_odd = c, sin_odd = s;
+  const auto turn = [&](double& cosine, double& sine) {
+    const double turned = cosine * c2 - sine * s2;
+    sine = sine * c2 + cosine * s2;
+    cosine = turned;
+  };
+  for (int n = 1; n < terms_; ++n) {
+    turn(cos_even, sin_even);
+    turn(cos_odd, sin_odd);
+    theta.T1 += alpha_[n] * sin_odd;
+    theta.T2 += beta_[n] * cos_odd;
+    theta.T3 += gamma_[n] * cos_even;
+    re += re_[n] * cos_even;
+    im += im_[n] * sin_even;
+  }
+  const double factor_re = loss_ + 2.0 * W_ * s * s, factor_im = 2.0 * W_ * s * c;
+  theta.re = factor_re * re - factor_im * im;
+  theta.im = factor_re * im + factor_im * re;
+  return theta;
+}
+
+/// With the nome nu_1 < e^-pi of 1 - m, after Jacobi's imaginary transform: hyperbolic functions of z K/K' by powers of
+/// E = e^{-|z| K/K'} for |z| <= pi/2, and the symmetries of the functions beyond.
+void Tumbling::set_hyperbolic(const Invariants& c, const Vec3& l) {
+  nome1_ = exp_decay(-kPi * c.K / c.K1);
+  K_ratio_ = c.K / c.K1;
+  shift_ratio_ = 1.0 - c.F / c.K1;
+  const double n1 = nome1_, n2 = n1 * n1, n4 = n2 * n2, n6 = n4 * n2;
+  // m1^(1/4) nu_1^(-1/4), without the rounding of the exponent.
+  const double f = 2.0 * (1.0 + n2 + n6 + n6 * n6) / (1.0 + 2.0 * n1 + 2.0 * n4 + 2.0 * (n4 * n4 * n1));
+  const double root = 1.0 / std::sqrt(std::sqrt(c.m));
+  const SinCos first = sincos(0.5 * kPi * c.F / c.K1);
+  const double c2 = (first.cos - first.sin) * (first.cos + first.sin), s2 = 2.0 * first.sin * first.cos;
+  double cosine = first.cos, sine = first.sin;
+  double lower = 1.0, power = 1.0, alternating = 1.0;  // nu_1^(n^2 - n), nu_1^n, (-1)^n
+  for (int n = 0; n < kTerms; ++n) {
+    if (n >= 2 && lower < kNothing) break;
+    terms_ = n + 1;
+    const double square = lower * power;  // nu_1^(n^2)
+    alpha_[n] = alternating * l[1] * root * square;
+    beta_[n] = alternating * l[0] * root * f * lower;
+    gamma_[n] = l[2] * f * lower;
+    re_[n] = alternating * square * sine;
+    im_[n] = alternating * square * cosine;
+    lower = square * power;
+    power *= n1;
+    alternating = -alternating;
+    const double turned = cosine * c2 - sine * s2;
+    sine = sine * c2 + cosine * s2;
+    cosine = turned;
+  }
+}
+
+Tumbling::Thetas Tumbling::hyperbolic(double z) const {
+  const double k = std::nearbyint(z * (1.0 / kPi));
+  const double z_rest = (z - k * kPiHi) - k * kPiLo;
+  const double E = exp_decay(-std::abs(z_rest) * K_ratio_);
+  const double E2 = E * E, E4 = E2 * E2, p = nome1_ / E2;
+  double T1 = alpha_[0] * (1.0 - E2), T2 = beta_[0], T3 = gamma_[0];
+  double re = re_[0] * (1.0 + E2), im = im_[0] * (1.0 - E2);
+  double p_n = 1.0, E_4n = 1.0;
+  for (int n = 1; n < terms_; ++n) {
+    p_n *= p;
+    E_4n *= E4;
+    const double E_odd = E_4n * E2;
+    T1 += alpha_[n] * p_n * (1.0 - E_odd);
+    T2 += beta_[n] * p_n * (1.0 + E_4n);
+    T3 += gamma_[n] * p_n * (1.0 + E_4n);
+    re += re_[n] * p_n * (1.0 + E_odd);
+    im += im_[n] * p_n * (1.0 - E_odd);
+  }
+  T2 *= E;
+  T3 *= E;
+  if (z_rest < 0.0) {
+    T1 = -T1;
+    im = -im;
+  }
+  if (static_cast<std::int64_t>(k) & 1) {
+    T1 = -T1;
+    T2 = -T2;
+  }
+  return {T1, T2, T3, re, im, -0.5 * z_rest * shift_ratio_};
+}
+
+Tumbling::State Tumbling::at(double t) const {
+  const double z = z0_ + z_rate_ * t;
+  const Thetas theta = circular_ ? circular(z) : hyperbolic(z);
+  const double across2 = theta.T1 * theta.T1 + theta.T2 * theta.T2;
+  const double across = std::sqrt(across2), N = 1.0 / std::sqrt(across2 + theta.T3 * theta.T3);
+  State state;
+  state.L_hat = N * Vec3(theta.T2, theta.T1, theta.T3);
+
+  // Half the polar angles of L, then half the precession: no arc tangent.
+  const SinCos polar = half_angle(N * across, state.L_hat.z());
+  const double cos_phi = across > 0.0 ? theta.T2 / across : 1.0,
+               sin_phi = across > 0.0 ? theta.T1 / across : 0.0;
+  SinCos phi = half_angle(sin_phi, std::abs(cos_phi));
+  if (cos_phi < 0.0) {
+    const double j = sign(sin_phi);
+    phi = {j * phi.cos, j * phi.sin};
+  }
+  const double X = 1.0 / std::sqrt(theta.re * theta.re + theta.im * theta.im);
+  const SinCos xi = half_angle(theta.im * X, theta.re * X);
+  const SinCos h = sincos(half_precession_ * t + theta.shift);
+  const double c_psi = h.cos * xi.cos - h.sin * xi.sin, s_psi = h.sin * xi.cos + h.cos * xi.sin;
+  const double even_c = c_psi * phi.cos, even_s = s_psi * phi.sin;
+  const double odd_c = s_psi * phi.cos, odd_s = c_psi * phi.sin;
+  state.f = Quat(polar.cos * (even_c + even_s), polar.sin * (odd_c + odd_s), -polar.sin * (even_c - even_s),
+                 polar.cos * (odd_c - odd_s));
+  return state;
+}
+
+double Tumbling::phase_rate() const {
+  return std::max(std::abs(z_rate_), std::abs(half_precession_));
+}
+
+}  // namespace tumble

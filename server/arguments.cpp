@@ -88,7 +88,7 @@ void add_options(CLI::App& app, Arguments& a, Names& names) {
   app.add_option("--accuracy", names.accuracy, "Budgets and tolerances (default: the scene's)")
       ->check(known_name(accuracy_from_name, "fast, balanced, exact"));
   app.add_option("--integrator", names.integrator, "How bodies move through a step (default: the scene's)")
-      ->check(known_name(integrator_from_name, join_names(integrator_name, Integrator::taylor8)));
+      ->check(known_name(integrator_from_name, join_names(integrator_name, Integrator::closed_form)));
   app.add_option("--solver", names.solver, "How contacts are solved (default: the scene's)")
       ->check(known_name(solver_from_name, join_names(solver_name, Solver::automatic)));
   app.add_option("--dt", a.time_step, "Time step in seconds (default: the scene's, else 1/240)")

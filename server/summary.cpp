@@ -29,6 +29,7 @@ Json counters_json(const Counters& c) {
       {"pairs_closed_form", n.closed_form},
       {"bodies_stepped", c.bodies_stepped},
       {"bodies_skipped_resting", c.bodies_skipped_resting},
+      {"bodies_skipped_flying", c.bodies_skipped_flying},
       {"islands_solved", c.islands_solved},
       {"islands_accepted", c.islands_accepted},
       {"islands_free", c.islands_free},

@@ -40,6 +40,12 @@ bool BroadPhase::move(std::uint32_t index, const Aabb& tight, double fat_margin,
   return true;
 }
 
+void BroadPhase::place(std::uint32_t index, const Aabb& bounds) {
+  const Proxy& proxy = proxies_[index];
+  tree_of(proxy).move(proxy.leaf, bounds);
+  ++boxes_renewed_;
+}
+
 void BroadPhase::update_pairs(std::vector<GeometryPair>& pairs) {
   const auto first = static_cast<std::ptrdiff_t>(pairs.size());
   for (const std::uint32_t index : dirty_) {

@@ -28,6 +28,9 @@ class BroadPhase {
   /// it a new fat box, if it leaves the old one in this step; so a fat box always covers the step ahead of it.
   bool move(std::uint32_t index, const Aabb& tight, double fat_margin, const Vec3& displacement);
 
+  /// Gives the geometry this very box, in which the caller has found no other: it is not searched for pairs.
+  void place(std::uint32_t index, const Aabb& bounds);
+
   /// Appends to `pairs`, sorted and without duplicates, every pair of overlapping fat boxes in which at least one
   /// proxy was added or got a new box since the last call. Two that do not move never pair.
   void update_pairs(std::vector<GeometryPair>& pairs);

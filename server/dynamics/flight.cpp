@@ -1,6 +1,8 @@
 // See flight.h.
 #include "dynamics/flight.h"
 
+#include <algorithm>
+
 namespace tumble {
 
 Flight::Flight(const MassProperties& mass, const Motion& start, const Vec3& acceleration,
@@ -23,6 +25,19 @@ Vec3 Flight::velocity(double t) const {
   if (linear_damping_ == 0.0) return v_ + t * acceleration_;
   const double ct = linear_damping_ * t;
   return exp_decay(-ct) * v_ + (t * mean_decay(ct)) * acceleration_;
+}
+
+Aabb Flight::path_bounds(double t0, double t1) const {
+  const Vec3 x0 = position(t0), x1 = position(t1), v0 = velocity(t0), v1 = velocity(t1);
+  Aabb bounds{x0.cwiseMin(x1), x0.cwiseMax(x1)};
+  for (int i = 0; i < 3; ++i) {
+    if (v0[i] * v1[i] >= 0.0) continue;
+    // It turns back on the way, and never beyond where the tangents at both ends meet.
+    const double meet = x0[i] + v0[i] * (x1[i] - x0[i] - v1[i] * (t1 - t0)) / (v0[i] - v1[i]);
+    bounds.lower[i] = std::min(bounds.lower[i], meet);
+    bounds.upper[i] = std::max(bounds.upper[i], meet);
+  }
+  return bounds;
 }
 
 Motion Flight::at(double t) const {

@@ -3,6 +3,7 @@
 // World frame W, SI units; t counts from the start.
 #pragma once
 
+#include "collision/aabb.h"
 #include "dynamics/free_rotation.h"
 
 namespace tumble {
@@ -19,6 +20,9 @@ class Flight {
   Motion at(double t) const;
   Vec3 position(double t) const;  ///< Of the centre of mass; a fraction of the cost of `at`.
   Vec3 velocity(double t) const;
+
+  /// Holds the centre of mass from t0 to t1, up to rounding.
+  Aabb path_bounds(double t0, double t1) const;
 
   const Vec3& acceleration() const { return acceleration_; }
   /// Fastest phase of the rotation [rad/s]; see FreeRotation.

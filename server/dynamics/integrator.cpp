@@ -6,11 +6,13 @@
 namespace tumble {
 namespace {
 
-constexpr std::array<Rival<Integrator, IntegrateFunction>, 4> kRivals = {{
+constexpr std::array<Rival<Integrator, IntegrateFunction>, 6> kRivals = {{
     {Integrator::course, "course", integrate_course},
     {Integrator::semi_implicit_euler, "semi_implicit_euler", integrate_semi_implicit_euler},
     {Integrator::rk4, "rk4", integrate_rk4},
     {Integrator::taylor8, "taylor8", integrate_taylor8},
+    {Integrator::dmv8, "dmv8", integrate_dmv8},
+    {Integrator::closed_form, "closed_form", integrate_closed_form},
 }};
 
 }  // namespace

@@ -13,7 +13,9 @@ enum class Integrator {
   course,               ///< The slides' scheme: end velocities, no gyroscopic term, q <- q q_r(dt).
   semi_implicit_euler,  ///< The same drift with world angular momentum as the state.
   rk4,                  ///< Classical Runge-Kutta on the orientation, L(t) exact.
-  taylor8,              ///< Taylor series of order 8 on (L_B, q), L(t) exact. The default.
+  taylor8,              ///< Taylor series of order 8 on (L_B, q), L(t) exact.
+  dmv8,                 ///< Discrete Moser-Veselov, preprocessed to order 8; order 2 under torque.
+  closed_form,          ///< Exact: free bodies in closed form, taylor8 under torque. The default.
 };
 
 /// v and L run linearly from their value at the start of the step to the one at its end (forces constant in W over
@@ -30,6 +32,11 @@ void integrate_semi_implicit_euler(const MassProperties& mass, const VelocityPat
                                    Motion& body);
 void integrate_rk4(const MassProperties& mass, const VelocityPath& path, double h, Motion& body);
 void integrate_taylor8(const MassProperties& mass, const VelocityPath& path, double h, Motion& body);
+void integrate_dmv8(const MassProperties& mass, const VelocityPath& path, double h, Motion& body);
+void integrate_closed_form(const MassProperties& mass, const VelocityPath& path, double h, Motion& body);
+/// What closed_form does with a body in contact, whose momentum changes at every step: dmv8 while it turns with constant
+/// momentum, which keeps energy and momentum to rounding at a third of the cost of a closed form made anew.
+void integrate_in_contact(const MassProperties& mass, const VelocityPath& path, double h, Motion& body);
 
 /// Moves a body that follows its given velocities, whatever acts on it (kinematic): x += h v, q <- exp(h w) q.
 void move_kinematic(Motion& body, double h);

@@ -188,6 +188,8 @@ void Tumbling::set_hyperbolic(const Invariants& c, const Vec3& l) {
 }
 
 Tumbling::Thetas Tumbling::hyperbolic(double z) const {
+  // Beyond, z itself is rounded to 1e-10 or worse, as in sincos.
+  if (!(std::abs(z) < 1.6e6)) z = std::remainder(z, 2.0 * kPi);
   const double k = std::nearbyint(z * (1.0 / kPi));
   const double z_rest = (z - k * kPiHi) - k * kPiLo;
   const double E = exp_decay(-std::abs(z_rest) * K_ratio_);

@@ -35,6 +35,7 @@ void for_each_option(OptionsType& options, Visit&& visit) {
   visit("calm_speed", options.rest.calm_speed);
   visit("calm_time", options.rest.calm_time);
   visit("skip_resting", options.skip_resting);
+  visit("skip_flying", options.skip_flying);
 }
 
 }  // namespace tumble

@@ -10,7 +10,7 @@ Conserved World::compute_conserved() const {
   Conserved sum;
   for (std::uint32_t slot = 0; slot < body_capacity(); ++slot) {
     if (!bodies_[slot].exists || !movable(slot)) continue;
-    const Motion& motion = motions_[slot];
+    const Motion motion = this->motion(slot);
     const double mass = masses_[slot].mass;
     const Vec3 p = mass * motion.v;
     sum.kinetic_energy += 0.5 * (p.dot(motion.v) + motion.L.dot(motion.w));
@@ -22,7 +22,9 @@ Conserved World::compute_conserved() const {
     const Spring* spring = std::get_if<Spring>(&tie.law);
     if (!spring) continue;
     const auto anchor = [this](std::uint32_t slot, const Vec3& p) -> Vec3 {
-      return slot == kWorld ? p : Vec3(motions_[slot].x + motions_[slot].q * p);
+      if (slot == kWorld) return p;
+      const Motion motion = this->motion(slot);
+      return motion.x + motion.q * p;
     };
     sum.potential_energy += spring_energy(*spring, (anchor(tie.b, tie.pB) - anchor(tie.a, tie.pA)).norm());
   }
@@ -34,7 +36,7 @@ std::uint64_t World::state_hash() const {
   hash.add(step_count_);
   for (std::uint32_t slot = 0; slot < body_capacity(); ++slot) {
     if (!bodies_[slot].exists || bodies_[slot].type == BodyType::fixed) continue;
-    const Motion& motion = motions_[slot];
+    const Motion motion = this->motion(slot);
     hash.add(static_cast<std::uint64_t>(slot) << 32 | bodies_[slot].generation);
     hash.add(motion.x);
     hash.add(motion.q);

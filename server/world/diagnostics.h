@@ -13,6 +13,7 @@ struct Counters {
   NarrowPhaseCounters narrow_phase;
   std::uint64_t boxes_renewed = 0;  ///< Broad-phase boxes that a body left.
   std::uint64_t bodies_stepped = 0, bodies_skipped_resting = 0;
+  std::uint64_t bodies_skipped_flying = 0;  ///< Not visited while they met nobody.
   std::uint64_t islands_solved = 0, islands_accepted = 0, islands_free = 0;
   std::uint64_t sweeps = 0;
   std::uint64_t solver_iterations = 0;  ///< Factorizations of the exact solver.

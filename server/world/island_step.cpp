@@ -7,36 +7,25 @@
 #include "world/world.h"
 
 namespace tumble {
-namespace {
 
-bool is_finite(const Motion& motion) {
+bool World::is_finite(const Motion& motion) {
   return motion.x.allFinite() && motion.q.coeffs().allFinite() && motion.v.allFinite() &&
          motion.L.allFinite() && motion.w.allFinite();
 }
 
-}  // namespace
+Vec3 World::acceleration_of(std::uint32_t slot) const {
+  const Vec3 a = masses_[slot].inv_mass * scratch_.force[slot];
+  return bodies_[slot].gravity ? Vec3(a + options_.gravity) : a;
+}
 
 void World::velocities_after_forces(std::uint32_t slot, double h, Vec3& v, Vec3& L) const {
   const Motion& motion = motions_[slot];
   const Body& body = bodies_[slot];
-  Vec3 a = masses_[slot].inv_mass * scratch_.force[slot];
-  if (body.gravity) a += options_.gravity;
   // Exact for v' = a - c v over the step: v e^{-ch} + a (1 - e^{-ch})/c.
   const double cv = body.linear_damping * h;
   const double cL = body.angular_damping * h;
-  v = exp_decay(-cv) * motion.v + (h * mean_decay(cv)) * a;
+  v = exp_decay(-cv) * motion.v + (h * mean_decay(cv)) * acceleration_of(slot);
   L = exp_decay(-cL) * motion.L + (h * mean_decay(cL)) * scratch_.torque[slot];
-}
-
-void World::advance_free(std::uint32_t slot, const StepContext& step) {
-  Motion& motion = motions_[slot];
-  const Motion last_good = motion;
-  VelocityPath path{.v0 = motion.v, .v1 = {}, .L0 = motion.L, .L1 = {}};
-  velocities_after_forces(slot, step.h, path.v1, path.L1);
-  step.integrate(masses_[slot], path, step.h, motion);
-  calm_for_[slot] = 0.0;
-  ++counters_.islands_free;
-  if (!is_finite(motion)) contain(slot, last_good);
 }
 
 void World::advance_connected(std::size_t island, const StepContext& step) {
@@ -72,6 +61,7 @@ void World::build_problem(std::size_t island, const StepContext& step) {
   scratch_.contact_source.clear();
   scratch_.row_source.clear();
   for (std::uint32_t i = islands.body_begin[island]; i < islands.body_begin[island + 1]; ++i) {
+    land(islands.bodies[i]);
     problem_body(islands.bodies[i], step.h);
   }
   scratch_.problem_movable = static_cast<std::uint32_t>(scratch_.problem.bodies.size());
@@ -218,7 +208,7 @@ void World::move_bodies(const StepContext& step) {
       path.v0 = solved.v0;
       path.L0 = motion.L + after.I_W * (solved.w0 - motion.w);
     }
-    step.integrate(mass, path, step.h, motion);
+    step.integrate_in_contact(mass, path, step.h, motion);
     motion.x += solved.shift;
     if (!solved.turn.isZero(0.0)) {
       motion.q = normalized(exp_map(solved.turn) * motion.q);
@@ -229,6 +219,7 @@ void World::move_bodies(const StepContext& step) {
 }
 
 void World::contain(std::uint32_t slot, const Motion& last_good) {
+  land(slot);
   Motion& motion = motions_[slot];
   motion = last_good;
   motion.v.setZero();

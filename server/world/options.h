@@ -16,7 +16,7 @@ enum class Accuracy { fast, balanced, exact };
 struct Options {
   double time_step = 1.0 / 240.0;        ///< [s], 1e-6..0.1. Smaller: better contacts, proportionally slower.
   Vec3 gravity = Vec3(0.0, 0.0, -9.81);  ///< [m/s^2]
-  Integrator integrator = Integrator::taylor8;
+  Integrator integrator = Integrator::closed_form;
   Solver solver = Solver::automatic;
 
   // Collision
@@ -37,6 +37,10 @@ struct Options {
   // Rest
   RestSettings rest;
   bool skip_resting = true;  ///< Off: resting islands are stepped like all others.
+
+  // Flight
+  /// Off: a body in free flight is visited at every step also while it can meet nobody. It moves the same.
+  bool skip_flying = true;
 };
 
 /// Options for a level of accuracy: budgets and tolerances together.

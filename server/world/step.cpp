@@ -36,6 +36,9 @@ void World::step() {
 void World::step(const std::function<void(Stage)>& stage_done) {
   StepContext step{.h = options_.time_step,
                    .integrate = integrate_function(options_.integrator),
+                   .integrate_in_contact = options_.integrator == Integrator::closed_form
+                                               ? integrate_in_contact
+                                               : integrate_function(options_.integrator),
                    .solve = solve_function(options_.solver),
                    .solver_settings = options_.solver_settings,
                    .bounds = options_.bounds};
@@ -70,6 +73,7 @@ void World::apply_pushes(const StepContext&) {
   for (ActivePush& active : pushes_) {
     const Push& push = active.push;
     const std::uint32_t slot = push.body.index;
+    descend(slot, step_count_);
     const Quat& q_WB = motions_[slot].q;
     const bool turns = push.frame == Push::Frame::body;
     const double share = std::min(1.0, active.steps_left);
@@ -87,6 +91,10 @@ void World::apply_pushes(const StepContext&) {
 }
 
 Pose World::geometry_pose(const Geometry& geometry) const {
+  if (aloft(geometry.body)) {
+    const Motion motion = this->motion(geometry.body);
+    return Pose{motion.q, motion.x} * geometry.X_BS;
+  }
   const Motion& motion = motions_[geometry.body];
   return Pose{motion.q, motion.x} * geometry.X_BS;
 }
@@ -108,8 +116,11 @@ void World::update_boxes(const StepContext& step) {
                         step.h * motions_[slot].v);
     }
   };
-  for (const std::uint32_t slot : awake_) update(slot);  // what came to rest in this step is still listed
+  for (const std::uint32_t slot : awake_) {  // what came to rest in this step is still listed
+    if (!try_lift(slot)) update(slot);
+  }
   for (const std::uint32_t slot : kinematic_) update(slot);
+  renew_flights();
   counters_.boxes_renewed = broad_phase_.boxes_renewed();
 }
 
@@ -208,13 +219,20 @@ void World::update_contacts(const StepContext& step) {
 
 void World::refresh_active() {
   if (!active_stale_) return;
+  std::fill(paired_.begin(), paired_.end(), std::uint8_t{0});
+  for (const Contact& contact : contacts_.all()) {
+    for (const std::uint32_t slot : {contact.body_a, contact.body_b}) {
+      paired_[slot] = 1;
+      descend(slot, step_count_);
+    }
+  }
   active_stale_ = false;
   awake_.clear();
   kinematic_.clear();
   for (std::uint32_t slot = 0; slot < body_capacity(); ++slot) {
     if (!bodies_[slot].exists) continue;
     if (bodies_[slot].type == BodyType::kinematic) kinematic_.push_back(slot);
-    if (movable(slot) && awake(slot)) awake_.push_back(slot);
+    if (movable(slot) && awake(slot) && !aloft(slot)) awake_.push_back(slot);
   }
   active_contacts_.clear();
   resting_points_ = 0;
@@ -272,15 +290,16 @@ void World::advance_islands(const StepContext& step) {
   }
   for (const std::uint32_t slot : kinematic_) move_kinematic(motions_[slot], step.h);
   counters_.bodies_stepped += awake_.size();
+  counters_.bodies_skipped_flying += aloft_count_;
 }
 
 void World::update_report() {
   refresh_active();
   report_ = StepReport{};
-  report_.bodies_awake = static_cast<std::uint32_t>(awake_.size());
+  report_.bodies_awake = static_cast<std::uint32_t>(awake_.size()) + aloft_count_;
   report_.bodies_resting = dynamic_count_ - report_.bodies_awake;
   report_.pairs = static_cast<std::uint32_t>(contacts_.all().size());
-  report_.islands = static_cast<std::uint32_t>(scratch_.islands.count());
+  report_.islands = static_cast<std::uint32_t>(scratch_.islands.count()) + aloft_count_;
   report_.contacts = resting_points_;
   report_.deepest_penetration = resting_penetration_;
   report_.max_residual = step_residual_;

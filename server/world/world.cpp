@@ -92,8 +92,10 @@ std::uint32_t World::take_slot() {
   bodies_.emplace_back();
   masses_.emplace_back();
   motions_.emplace_back();
+  free_.emplace_back();
   awake_flag_.push_back(0);
   pushed_.push_back(0);
+  paired_.push_back(0);
   calm_for_.push_back(0.0);
   rest_next_.push_back(slot);
   scratch_.force.push_back(Vec3::Zero());
@@ -134,7 +136,9 @@ BodyId World::create_body(const BodyDefinition& definition) {
   motion.w = moves ? definition.w_WB : Vec3::Zero();
   motion.L = angular_momentum(mass, motion.q, motion.w);
   awake_flag_[slot] = moves;
+  free_[slot] = FreeBody{};
   pushed_[slot] = 0;
+  paired_[slot] = 0;
   calm_for_[slot] = 0.0;
   rest_next_[slot] = slot;
   names_.emplace(definition.name, slot);
@@ -191,6 +195,7 @@ bool World::destroy_body(BodyId id) {
     if (tie.b == slot && tie.a != kWorld) wake_slot(tie.a);
   }
   wake_slot(slot);
+  land(slot);
   std::erase_if(ties_, [slot](const Tie& tie) { return tie.a == slot || tie.b == slot; });
   std::erase_if(pushes_, [slot](const ActivePush& active) { return active.push.body.index == slot; });
   for (const std::uint32_t geometry : bodies_[slot].geometries) {
@@ -230,7 +235,9 @@ void World::add_tie(const std::string& name, const Anchor& a, const Anchor& b,
   if (!moves || tie.a == tie.b)
     refuse("anchor: a spring or rope needs two different ends, one on a dynamic body");
   for (const std::uint32_t slot : {tie.a, tie.b}) {
-    if (slot != kWorld) wake_slot(slot);
+    if (slot == kWorld) continue;
+    wake_slot(slot);
+    land(slot);
   }
   ties_.push_back(tie);
 }
@@ -284,6 +291,7 @@ void World::set_motion(BodyId id, const Pose& X_WL, const Vec3& v_WB, const Vec3
     refuse(fmt::format("body: a static body cannot be moved ('{}')", bodies_[slot].definition.name));
   }
   wake(id);
+  land(slot);
   for (const Contact& contact : contacts_.all()) {
     if (contact.body_a == slot) wake_slot(contact.body_b);
     if (contact.body_b == slot) wake_slot(contact.body_a);
@@ -333,7 +341,7 @@ std::optional<BodyId> World::find(std::string_view name) const {
 }
 
 Pose World::link_pose(std::uint32_t slot) const {
-  const Motion& motion = motions_[slot];
+  const Motion motion = this->motion(slot);
   return {motion.q, motion.x - motion.q * bodies_[slot].p_LB};
 }
 

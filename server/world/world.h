@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "collision/broad_phase.h"
+#include "dynamics/flight.h"
 #include "dynamics/island.h"
 #include "world/contact_graph.h"
 #include "world/definition.h"
@@ -71,7 +72,8 @@ class World {
   std::uint32_t body_capacity() const { return static_cast<std::uint32_t>(bodies_.size()); }
   std::uint32_t body_count() const { return body_count_; }
   const Body& body(std::uint32_t slot) const { return bodies_[slot]; }
-  const Motion& motion(std::uint32_t slot) const { return motions_[slot]; }
+  /// Of a body aloft it is evaluated here: reading costs, not reading costs nothing, and the state is the same.
+  Motion motion(std::uint32_t slot) const;
   const MassProperties& mass_properties(std::uint32_t slot) const { return masses_[slot]; }
   /// A dynamic body that is not stepped until something near it changes.
   bool resting(std::uint32_t slot) const { return movable(slot) && !awake(slot); }
@@ -104,6 +106,25 @@ class World {
     Push push;
     double steps_left;  // whole ones and a last fraction
   };
+  /// The flight of a body on which only constant forces act; see flight_step.cpp. Steps count from the world's start.
+  struct FreeBody {
+    enum class State : std::uint8_t {
+      none,    ///< Something acts on it: motions_ is its state.
+      flying,  ///< The flight is its state; motions_ holds the value of now.
+      aloft,   ///< The flight is its state; nobody evaluates it.
+    };
+    Flight flight;
+    std::uint64_t takeoff = 0;  ///< Where the flight's time starts,
+    std::uint64_t last = 0;     ///< and where it starts anew, before its phases lose digits.
+    std::uint64_t due = 0;      ///< Aloft: its box holds until here. Flying: it tries to go aloft then.
+    std::uint64_t reach = 0;    ///< Length of its last box [steps].
+    State state = State::none;
+  };
+  struct Due {
+    std::uint64_t step;
+    std::uint32_t slot;
+    auto operator<=>(const Due&) const = default;
+  };
   /// A spring or rope between two anchors in body frames; slot kWorld: p in W.
   struct Tie {
     std::uint32_t a, b;
@@ -118,6 +139,7 @@ class World {
     std::vector<GeometryPair> pairs;
     std::vector<GeometryPair> whole_pairs, split_pairs;  // pairs as found; those of them with a surface
     std::vector<std::uint32_t> triangles;
+    std::vector<std::uint32_t> near;  // geometries in the box of a flight
     std::vector<std::uint32_t> lost;  // contacts whose boxes came apart, ascending
     std::vector<IslandEdge> edges;
     std::vector<std::uint32_t> edge_source;  // contact index, or contacts().size() + tie index
@@ -141,6 +163,7 @@ class World {
   struct StepContext {
     double h;
     IntegrateFunction integrate;
+    IntegrateFunction integrate_in_contact;
     SolveFunction solve;
     SolverSettings solver_settings;
     BoundSettings bounds;
@@ -180,8 +203,23 @@ class World {
   Contact make_contact(GeometryPair pair) const;
   double pair_margin(const Contact& contact, double h) const;
 
-  // island_step.cpp: one island through one step.
+  // flight_step.cpp: free bodies.
+  bool aloft(std::uint32_t slot) const { return free_[slot].state == FreeBody::State::aloft; }
+  Motion motion_in_flight(std::uint32_t slot, std::uint64_t step) const;
   void advance_free(std::uint32_t slot, const StepContext& step);
+  void follow_flight(std::uint32_t slot);
+  /// At the end of a step: lets go of a body that meets nobody for some steps. False: it has to be visited.
+  bool try_lift(std::uint32_t slot);
+  bool lift(std::uint32_t slot, std::uint64_t now);
+  bool reach_ahead(std::uint32_t slot, std::uint64_t now, std::uint64_t until);
+  /// At the end of a step: new boxes for the bodies aloft whose boxes end.
+  void renew_flights();
+  /// Aloft no more, but on its flight as before.
+  void descend(std::uint32_t slot, std::uint64_t now);
+  /// Off its flight: something acts on it, or moves it elsewhere.
+  void land(std::uint32_t slot);
+
+  // island_step.cpp: one island through one step.
   void advance_connected(std::size_t island, const StepContext& step);
   void bounce(ContactProblem& problem);
   void build_problem(std::size_t island, const StepContext& step);
@@ -191,7 +229,9 @@ class World {
   void store_impulses();
   bool try_rest(double residual);
   void move_bodies(const StepContext& step);
+  Vec3 acceleration_of(std::uint32_t slot) const;
   void velocities_after_forces(std::uint32_t slot, double h, Vec3& v, Vec3& L) const;
+  static bool is_finite(const Motion& motion);
   void contain(std::uint32_t slot, const Motion& last_good);
 
   Options options_;
@@ -207,9 +247,11 @@ class World {
   std::map<std::string, std::uint32_t, std::less<>> names_;
 
   // State, by slot: hot arrays.
-  std::vector<Motion> motions_;
+  std::vector<Motion> motions_;  // out of date where aloft
+  std::vector<FreeBody> free_;
   std::vector<std::uint8_t> awake_flag_;
   std::vector<std::uint8_t> pushed_;      // has an active push: must not rest
+  std::vector<std::uint8_t> paired_;      // some contact, open or closed, has it
   std::vector<double> calm_for_;          // [s]
   std::vector<std::uint32_t> rest_next_;  // ring of the bodies that came to rest together
 
@@ -218,9 +260,12 @@ class World {
   std::vector<Tie> ties_;
   std::vector<ActivePush> pushes_;
 
+  std::vector<Due> due_;  // heap, earliest first: boxes of bodies aloft that end; some are out of date
+  std::uint32_t aloft_count_ = 0;
+
   // Who takes part in the step, ascending; rebuilt only when contacts or sleepers changed.
   bool active_stale_ = true;
-  std::vector<std::uint32_t> awake_;            // movable bodies
+  std::vector<std::uint32_t> awake_;            // movable bodies but those aloft
   std::vector<std::uint32_t> kinematic_;        // kinematic bodies
   std::vector<std::uint32_t> active_contacts_;  // with an awake or moving body
   std::uint32_t resting_points_ = 0;

@@ -67,8 +67,8 @@ void add_measurements() {
       changed.options.solver = solver;
       add_measurement(name + "/solver:" + solver_name(solver), changed);
     }
-    for (const Integrator integrator :
-         {Integrator::course, Integrator::semi_implicit_euler, Integrator::rk4, Integrator::taylor8}) {
+    for (const Integrator integrator : {Integrator::course, Integrator::semi_implicit_euler, Integrator::rk4,
+                                        Integrator::taylor8, Integrator::dmv8, Integrator::closed_form}) {
       Scene changed = scene;
       changed.options.integrator = integrator;
       add_measurement(name + "/integrator:" + integrator_name(integrator), changed);

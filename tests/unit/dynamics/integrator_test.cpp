@@ -83,6 +83,30 @@ TEST(Taylor8, ErrorFallsWithTheEighthPowerWhereTheSeriesIsCutOff) {
             20 * end_error(kPlate, integrate_taylor8, 1.0 / 112));
 }
 
+TEST(Dmv8, EndsNearTheExactSolutionAndKeepsTheEnergy) {
+  EXPECT_LT(end_error(kGeneric, integrate_dmv8, 1.0 / 60), 1e-13);   // 1.0e-14
+  EXPECT_LT(end_error(kGeneric, integrate_dmv8, 1.0 / 240), 2e-13);  // 2.1e-14
+  EXPECT_LT(end_error(kPlate, integrate_dmv8, 1.0 / 60), 4e-10);     // 3.7e-11
+  EXPECT_LT(end_error(kPlate, integrate_dmv8, 1.0 / 240), 2e-12);    // 1.8e-13
+  EXPECT_LT(end_error(kRod, integrate_dmv8, 1.0 / 60), 3e-8);        // 2.9e-9
+  EXPECT_LT(end_error(kTorque, integrate_dmv8, 1.0 / 60), 3e-4);     // 2.5e-5: order 2 under torque
+  EXPECT_LT(end_error(kTorque, integrate_dmv8, 1.0 / 240), 2e-5);    // 1.6e-6
+  const double energy = rotation_energy(start_of(kPlate));
+  EXPECT_NEAR(rotation_energy(run(kPlateLong, integrate_dmv8, 1.0 / 60)) / energy, 1.0, 1e-13);
+}
+
+TEST(Dmv8, AFastBodyIsSubSteppedToTheSameEnd) {
+  EXPECT_LT(end_error(kPlate, integrate_dmv8, 1.0), 5e-7);  // 25 turns of 0.3 rad a step
+}
+
+TEST(ClosedForm, EndsWhereTheExactSolutionDoes) {
+  // Made anew at each step: each start rounds. One flight over the whole time is exacter, see FreeRotation.
+  EXPECT_LT(end_error(kGeneric, integrate_closed_form, 1.0 / 60), 7e-13);  // 6.6e-14
+  EXPECT_LT(end_error(kPlate, integrate_closed_form, 1.0 / 60), 9e-13);    // 8.3e-14
+  EXPECT_LT(end_error(kPlate, integrate_closed_form, 1.0), 1e-12);  // 1.1e-13
+  EXPECT_LT(end_error(kTorque, integrate_closed_form, 1.0 / 60), 2e-13);  // 2.9e-14
+}
+
 TEST(Rk4, EndsWithTheErrorOfItsOrder) {
   EXPECT_LT(end_error(kGeneric, integrate_rk4, 1.0 / 60), 1e-6);   // 2.0e-7
   EXPECT_LT(end_error(kGeneric, integrate_rk4, 1.0 / 240), 5e-9);  // 7.7e-10
@@ -114,8 +138,8 @@ TEST(Course, DoesNotConvergeToTheMotion) {
 }
 
 TEST(Integrators, AllButCourseKeepTheMomentumToTheBit) {
-  for (const Integrator integrator :
-       {Integrator::semi_implicit_euler, Integrator::rk4, Integrator::taylor8}) {
+  for (const Integrator integrator : {Integrator::semi_implicit_euler, Integrator::rk4, Integrator::taylor8,
+                                      Integrator::dmv8, Integrator::closed_form}) {
     const Motion body = run(kPlate, integrate_function(integrator), 1.0 / 60);
     EXPECT_EQ(body.L, kPlate.I.cwiseProduct(kPlate.w0)) << integrator_name(integrator);
     EXPECT_NEAR(body.q.norm(), 1.0, 3e-16);
@@ -218,8 +242,8 @@ TEST(Taylor8, ABodyWithTiltedPrincipalAxesMovesTheSame) {
   MassProperties tilted = straight;
   tilted.q_BP = exp_map(Vec3(0.4, -1.1, 0.7));
   const Vec3 L = kPlate.I.cwiseProduct(kPlate.w0);
-  for (const Integrator integrator :
-       {Integrator::semi_implicit_euler, Integrator::rk4, Integrator::taylor8}) {
+  for (const Integrator integrator : {Integrator::semi_implicit_euler, Integrator::rk4, Integrator::taylor8,
+                                      Integrator::dmv8, Integrator::closed_form}) {
     Motion a, b;
     b.q = tilted.q_BP.conjugate();
     for (int i = 0; i < 120; ++i) {
@@ -232,8 +256,8 @@ TEST(Taylor8, ABodyWithTiltedPrincipalAxesMovesTheSame) {
 
 TEST(Integrators, StayFiniteAtAbsurdSpeed) {
   const MassProperties mass = principal_body(Vec3(1, 2, 3));
-  for (const Integrator integrator :
-       {Integrator::course, Integrator::semi_implicit_euler, Integrator::rk4, Integrator::taylor8}) {
+  for (const Integrator integrator : {Integrator::course, Integrator::semi_implicit_euler, Integrator::rk4,
+                                      Integrator::taylor8, Integrator::dmv8, Integrator::closed_form}) {
     for (const double speed : {1e3, 1e6, 1e9, 1e20}) {
       Motion body;
       const Vec3 L(speed, -2.0 * speed, 0.5 * speed);
@@ -256,8 +280,8 @@ TEST(Kinematic, FollowsItsVelocitiesExactly) {
 }
 
 TEST(Integrators, NamesAndEnumBelongTogether) {
-  for (const Integrator integrator :
-       {Integrator::course, Integrator::semi_implicit_euler, Integrator::rk4, Integrator::taylor8}) {
+  for (const Integrator integrator : {Integrator::course, Integrator::semi_implicit_euler, Integrator::rk4,
+                                      Integrator::taylor8, Integrator::dmv8, Integrator::closed_form}) {
     EXPECT_EQ(integrator_from_name(integrator_name(integrator)), integrator);
   }
   EXPECT_EQ(integrator_from_name("euler"), std::nullopt);

@@ -1,0 +1,148 @@
+// Free bodies. A body on which only constant forces act follows its Flight from where it took off: a step evaluates it
+// where it is looked at, and ends with the same bits whether it does or not. A body that can meet nobody before some
+// later step is aloft: no step visits it until then, nor does it cost anything unless somebody reads its motion.
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "world/world.h"
+
+namespace tumble {
+namespace {
+
+/// How many steps ahead the box of a body aloft reaches: from the first try, doubled whenever it was left without having
+/// met anybody, halved while it holds somebody.
+constexpr std::uint64_t kNearest = 8, kFarthest = std::uint64_t{1} << 20;
+
+/// Phases [rad] within which a flight keeps its digits; then it is started anew.
+constexpr double kLargestPhase = 1e6;
+
+}  // namespace
+
+Motion World::motion(std::uint32_t slot) const {
+  return aloft(slot) ? motion_in_flight(slot, step_count_) : motions_[slot];
+}
+
+Motion World::motion_in_flight(std::uint32_t slot, std::uint64_t step) const {
+  const FreeBody& body = free_[slot];
+  return body.flight.at(static_cast<double>(step - body.takeoff) * options_.time_step);
+}
+
+void World::advance_free(std::uint32_t slot, const StepContext& step) {
+  const Motion last_good = motions_[slot];
+  calm_for_[slot] = 0.0;
+  ++counters_.islands_free;
+  if (options_.integrator == Integrator::closed_form && scratch_.torque[slot].isZero(0.0)) {
+    follow_flight(slot);
+  } else {
+    land(slot);
+    VelocityPath path{.v0 = last_good.v, .v1 = {}, .L0 = last_good.L, .L1 = {}};
+    velocities_after_forces(slot, step.h, path.v1, path.L1);
+    step.integrate(masses_[slot], path, step.h, motions_[slot]);
+  }
+  if (!is_finite(motions_[slot])) contain(slot, last_good);
+}
+
+void World::follow_flight(std::uint32_t slot) {
+  FreeBody& body = free_[slot];
+  const Vec3 acceleration = acceleration_of(slot);
+  if (body.state == FreeBody::State::none || body.flight.acceleration() != acceleration ||
+      step_count_ >= body.last) {
+    body.flight = Flight(masses_[slot], motions_[slot], acceleration, bodies_[slot].linear_damping,
+                         bodies_[slot].angular_damping);
+    body.takeoff = step_count_;
+    const double steps = kLargestPhase / (body.flight.phase_rate() * options_.time_step);
+    body.last = step_count_ + static_cast<std::uint64_t>(std::max(1.0, std::min(0x1p60, steps)));
+    body.due = step_count_;
+    body.reach = kNearest;
+    body.state = FreeBody::State::flying;
+  }
+  motions_[slot] = motion_in_flight(slot, step_count_ + 1);
+}
+
+/// Its boxes, if none of them meets anybody else's.
+bool World::reach_ahead(std::uint32_t slot, std::uint64_t now, std::uint64_t until) {
+  const FreeBody& body = free_[slot];
+  const double h = options_.time_step;
+  const Aabb path = body.flight.path_bounds(static_cast<double>(now - body.takeoff) * h,
+                                            static_cast<double>(until - body.takeoff) * h);
+  const auto box = [&](const Geometry& geometry) {
+    return path.grown(geometry.X_BS.p.norm() + geometry.radius + geometry.contact_margin);
+  };
+  for (const std::uint32_t index : bodies_[slot].geometries) {
+    const Aabb bounds = box(geometries_[index]);
+    if (!bounds.lower.allFinite() || !bounds.upper.allFinite()) return false;
+    scratch_.near.clear();
+    broad_phase_.query(bounds, scratch_.near);
+    for (const std::uint32_t other : scratch_.near) {
+      if (geometries_[other].body != slot) return false;
+    }
+  }
+  for (const std::uint32_t index : bodies_[slot].geometries)
+    broad_phase_.place(index, box(geometries_[index]));
+  return true;
+}
+
+bool World::lift(std::uint32_t slot, std::uint64_t now) {
+  FreeBody& body = free_[slot];
+  const std::uint64_t farthest = std::min(kFarthest, 2 * body.reach);
+  for (body.reach = farthest; body.reach >= kNearest; body.reach /= 2) {
+    const std::uint64_t until = std::min(now + body.reach, body.last);
+    if (until <= now || !reach_ahead(slot, now, until)) continue;
+    body.due = until;
+    due_.push_back({until, slot});
+    std::push_heap(due_.begin(), due_.end(), std::greater<>());
+    return true;
+  }
+  body.reach = kNearest;
+  body.due = now + kNearest;  // try again then
+  return false;
+}
+
+bool World::try_lift(std::uint32_t slot) {
+  FreeBody& body = free_[slot];
+  const std::uint64_t now = step_count_ + 1;
+  if (body.state != FreeBody::State::flying || !options_.skip_flying || now < body.due || paired_[slot] ||
+      pushed_[slot]) {
+    return false;
+  }
+  if (!lift(slot, now)) return false;
+  body.state = FreeBody::State::aloft;
+  ++aloft_count_;
+  active_stale_ = true;
+  return true;
+}
+
+void World::renew_flights() {
+  const std::uint64_t now = step_count_ + 1;
+  while (!due_.empty() && due_.front().step <= now) {
+    std::pop_heap(due_.begin(), due_.end(), std::greater<>());
+    const std::uint32_t slot = due_.back().slot;
+    due_.pop_back();
+    if (!aloft(slot) || free_[slot].due > now) continue;  // it came down before, or went up again since
+    if (lift(slot, now)) continue;
+    descend(slot, now);
+  }
+}
+
+void World::descend(std::uint32_t slot, std::uint64_t now) {
+  FreeBody& body = free_[slot];
+  if (body.state != FreeBody::State::aloft) return;
+  motions_[slot] = motion_in_flight(slot, now);
+  body.state = FreeBody::State::flying;
+  body.reach = kNearest;
+  body.due = now + kNearest;
+  --aloft_count_;
+  active_stale_ = true;
+  for (const std::uint32_t index : bodies_[slot].geometries) {
+    broad_phase_.remove(index);
+    add_box(index);
+  }
+}
+
+void World::land(std::uint32_t slot) {
+  descend(slot, step_count_);
+  free_[slot].state = FreeBody::State::none;
+}
+
+}  // namespace tumble

@@ -33,6 +33,7 @@ Json counters_json(const Counters& c) {
       {"islands_solved", c.islands_solved},
       {"islands_accepted", c.islands_accepted},
       {"islands_free", c.islands_free},
+      {"islands_smooth", c.islands_smooth},
       {"sweeps", c.sweeps},
       {"solver_iterations", c.solver_iterations},
       {"solver_fallbacks", c.solver_fallbacks},

@@ -2,29 +2,52 @@
 #include "dynamics/flight.h"
 
 #include <algorithm>
+#include <cassert>
+
+#include "dynamics/integrator.h"
 
 namespace tumble {
 
-Flight::Flight(const MassProperties& mass, const Motion& start, const Vec3& acceleration,
-               double linear_damping, double angular_damping)
-    : x_(start.x),
-      v_(start.v),
-      L_(start.L),
-      acceleration_(acceleration),
-      linear_damping_(linear_damping),
-      angular_damping_(angular_damping),
-      rotation_(mass, start) {}
+Flight::Flight(const MassProperties& mass, const Motion& start, const FlightLoad& load)
+    : x_(start.x), v_(start.v), L_(start.L), load_(load), rotation_(mass, start) {}
 
 Vec3 Flight::position(double t) const {
-  if (linear_damping_ == 0.0) return x_ + t * (v_ + (0.5 * t) * acceleration_);
-  const double ct = linear_damping_ * t;
-  return x_ + t * (mean_decay(ct) * v_ + (t * mean_loss(ct)) * acceleration_);
+  const double c = load_.linear_damping;
+  if (c == 0.0) return x_ + t * (v_ + (0.5 * t) * load_.acceleration);
+  return x_ + t * (mean_decay(c * t) * v_ + (t * mean_loss(c * t)) * load_.acceleration);
 }
 
 Vec3 Flight::velocity(double t) const {
-  if (linear_damping_ == 0.0) return v_ + t * acceleration_;
-  const double ct = linear_damping_ * t;
-  return exp_decay(-ct) * v_ + (t * mean_decay(ct)) * acceleration_;
+  const double c = load_.linear_damping;
+  if (c == 0.0) return v_ + t * load_.acceleration;
+  return exp_decay(-c * t) * v_ + (t * mean_decay(c * t)) * load_.acceleration;
+}
+
+Vec3 Flight::angular_momentum(double t) const {
+  const double c = load_.angular_damping;
+  return c == 0.0 ? Vec3(L_ + t * load_.torque) : Vec3(exp_decay(-c * t) * L_);
+}
+
+Motion Flight::at(double t) const {
+  assert(turns_freely());
+  // Damping keeps the direction of L: the body turns as a free one does whose clock slows down with L.
+  const double c = load_.angular_damping;
+  const double decay = c == 0.0 ? 1.0 : exp_decay(-c * t);
+  const double clock = c == 0.0 ? t : t * mean_decay(c * t);
+  const FreeRotation::State rotation = rotation_.at(clock);
+  return {
+      .x = position(t), .q = rotation.q_WB, .v = velocity(t), .L = decay * L_, .w = decay * rotation.w_WB};
+}
+
+Motion Flight::stepped(const MassProperties& mass, const Quat& q_at_t0, double t0, double t1) const {
+  assert(load_.angular_damping == 0.0);
+  Motion motion;
+  motion.q = q_at_t0;
+  const VelocityPath path{.v0 = {}, .v1 = {}, .L0 = angular_momentum(t0), .L1 = angular_momentum(t1)};
+  integrate_taylor8(mass, path, t1 - t0, motion);
+  motion.x = position(t1);
+  motion.v = velocity(t1);
+  return motion;
 }
 
 Aabb Flight::path_bounds(double t0, double t1) const {
@@ -38,15 +61,6 @@ Aabb Flight::path_bounds(double t0, double t1) const {
     bounds.upper[i] = std::max(bounds.upper[i], meet);
   }
   return bounds;
-}
-
-Motion Flight::at(double t) const {
-  // Damping keeps the direction of L: the body turns as a free one does whose clock slows down with L.
-  const double decay = angular_damping_ == 0.0 ? 1.0 : exp_decay(-angular_damping_ * t);
-  const double clock = angular_damping_ == 0.0 ? t : t * mean_decay(angular_damping_ * t);
-  const FreeRotation::State rotation = rotation_.at(clock);
-  return {
-      .x = position(t), .q = rotation.q_WB, .v = velocity(t), .L = decay * L_, .w = decay * rotation.w_WB};
 }
 
 }  // namespace tumble

@@ -15,6 +15,7 @@ struct Counters {
   std::uint64_t bodies_stepped = 0, bodies_skipped_resting = 0;
   std::uint64_t bodies_skipped_flying = 0;  ///< Not visited while they met nobody.
   std::uint64_t islands_solved = 0, islands_accepted = 0, islands_free = 0;
+  std::uint64_t islands_smooth = 0;  ///< Of springs only, by collocation.
   std::uint64_t sweeps = 0;
   std::uint64_t solver_iterations = 0;  ///< Factorizations of the exact solver.
   std::uint64_t solver_fallbacks = 0;   ///< Islands without a trustworthy exact solution.

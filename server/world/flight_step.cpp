@@ -32,24 +32,33 @@ void World::advance_free(std::uint32_t slot, const StepContext& step) {
   const Motion last_good = motions_[slot];
   calm_for_[slot] = 0.0;
   ++counters_.islands_free;
-  if (options_.integrator == Integrator::closed_form && scratch_.torque[slot].isZero(0.0)) {
+  const bool exact = options_.integrator == Integrator::closed_form;
+  const Load& load = scratch_.load[slot];
+  const bool spun_and_damped = !load.torque_W().isZero(0.0) && bodies_[slot].angular_damping > 0.0;
+  if (exact && !load.follows_body() && !spun_and_damped) {
     follow_flight(slot);
   } else {
     land(slot);
-    VelocityPath path{.v0 = last_good.v, .v1 = {}, .L0 = last_good.L, .L1 = {}};
-    velocities_after_forces(slot, step.h, path.v1, path.L1);
-    step.integrate(masses_[slot], path, step.h, motions_[slot]);
+    if (!exact || !advance_smooth_body(slot, step)) integrate_free(slot, step);
   }
   if (!is_finite(motions_[slot])) contain(slot, last_good);
 }
 
+void World::integrate_free(std::uint32_t slot, const StepContext& step) {
+  Motion& motion = motions_[slot];
+  VelocityPath path{.v0 = motion.v, .v1 = {}, .L0 = motion.L, .L1 = {}};
+  velocities_after_forces(slot, step.h, path.v1, path.L1);
+  step.integrate(masses_[slot], path, step.h, motion);
+}
+
 void World::follow_flight(std::uint32_t slot) {
   FreeBody& body = free_[slot];
-  const Vec3 acceleration = acceleration_of(slot);
-  if (body.state == FreeBody::State::none || body.flight.acceleration() != acceleration ||
-      step_count_ >= body.last) {
-    body.flight = Flight(masses_[slot], motions_[slot], acceleration, bodies_[slot].linear_damping,
-                         bodies_[slot].angular_damping);
+  const FlightLoad load{.acceleration = acceleration_of(slot),
+                        .torque = scratch_.load[slot].torque_W(),
+                        .linear_damping = bodies_[slot].linear_damping,
+                        .angular_damping = bodies_[slot].angular_damping};
+  if (body.state == FreeBody::State::none || step_count_ >= body.last || body.flight.load() != load) {
+    body.flight = Flight(masses_[slot], motions_[slot], load);
     body.takeoff = step_count_;
     const double steps = kLargestPhase / (body.flight.phase_rate() * options_.time_step);
     body.last = step_count_ + static_cast<std::uint64_t>(std::max(1.0, std::min(0x1p60, steps)));
@@ -57,7 +66,12 @@ void World::follow_flight(std::uint32_t slot) {
     body.reach = kNearest;
     body.state = FreeBody::State::flying;
   }
-  motions_[slot] = motion_in_flight(slot, step_count_ + 1);
+  if (body.flight.turns_freely()) {
+    motions_[slot] = motion_in_flight(slot, step_count_ + 1);
+  } else {
+    const double h = options_.time_step, steps = static_cast<double>(step_count_ - body.takeoff);
+    motions_[slot] = body.flight.stepped(masses_[slot], motions_[slot].q, steps * h, (steps + 1.0) * h);
+  }
 }
 
 /// Its boxes, if none of them meets anybody else's.
@@ -102,8 +116,8 @@ bool World::lift(std::uint32_t slot, std::uint64_t now) {
 bool World::try_lift(std::uint32_t slot) {
   FreeBody& body = free_[slot];
   const std::uint64_t now = step_count_ + 1;
-  if (body.state != FreeBody::State::flying || !options_.skip_flying || now < body.due || paired_[slot] ||
-      pushed_[slot]) {
+  if (body.state != FreeBody::State::flying || !body.flight.turns_freely() || !options_.skip_flying ||
+      now < body.due || paired_[slot] || pushed_[slot]) {
     return false;
   }
   if (!lift(slot, now)) return false;

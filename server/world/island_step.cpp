@@ -14,21 +14,29 @@ bool World::is_finite(const Motion& motion) {
 }
 
 Vec3 World::acceleration_of(std::uint32_t slot) const {
-  const Vec3 a = masses_[slot].inv_mass * scratch_.force[slot];
+  const Vec3 a = masses_[slot].inv_mass * scratch_.load[slot].force_W();
   return bodies_[slot].gravity ? Vec3(a + options_.gravity) : a;
 }
 
 void World::velocities_after_forces(std::uint32_t slot, double h, Vec3& v, Vec3& L) const {
   const Motion& motion = motions_[slot];
   const Body& body = bodies_[slot];
+  const Load& load = scratch_.load[slot];
+  Vec3 a = acceleration_of(slot), torque = load.torque_W();
+  if (load.follows_body()) {
+    const Mat3 R_WB = rotation_matrix(motion.q);
+    a += masses_[slot].inv_mass * (load.force(R_WB) - load.force_W());
+    torque = load.torque(R_WB);
+  }
   // Exact for v' = a - c v over the step: v e^{-ch} + a (1 - e^{-ch})/c.
   const double cv = body.linear_damping * h;
   const double cL = body.angular_damping * h;
-  v = exp_decay(-cv) * motion.v + (h * mean_decay(cv)) * acceleration_of(slot);
-  L = exp_decay(-cL) * motion.L + (h * mean_decay(cL)) * scratch_.torque[slot];
+  v = exp_decay(-cv) * motion.v + (h * mean_decay(cv)) * a;
+  L = exp_decay(-cL) * motion.L + (h * mean_decay(cL)) * torque;
 }
 
 void World::advance_connected(std::size_t island, const StepContext& step) {
+  if (advance_springs(island, step)) return;
   build_problem(island, step);
   ContactProblem& problem = scratch_.problem;
   prepare(problem, step.bounds);

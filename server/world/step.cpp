@@ -64,26 +64,26 @@ void World::step(const std::function<void(Stage)>& stage_done) {
 }
 
 void World::apply_pushes(const StepContext&) {
-  for (const std::uint32_t slot : scratch_.forced) {
-    scratch_.force[slot].setZero();
-    scratch_.torque[slot].setZero();
+  for (const std::uint32_t slot : scratch_.loaded) {
+    scratch_.load[slot] = Load{};
     pushed_[slot] = 0;
   }
-  scratch_.forced.clear();
+  scratch_.loaded.clear();
   for (ActivePush& active : pushes_) {
     const Push& push = active.push;
     const std::uint32_t slot = push.body.index;
-    descend(slot, step_count_);
-    const Quat& q_WB = motions_[slot].q;
-    const bool turns = push.frame == Push::Frame::body;
     const double share = std::min(1.0, active.steps_left);
-    const Vec3 force = share * (turns ? q_WB * push.force : push.force);
-    const Vec3 torque = share * (turns ? q_WB * push.torque : push.torque);
-    scratch_.force[slot] += force;
-    // Torque of a force at a point, sums of torques: tau = sum x' x F.
-    scratch_.torque[slot] += torque + (q_WB * push.point_B).cross(force);
+    Load& load = scratch_.load[slot];
+    if (push.frame == Push::Frame::body) {
+      load.add_body_force(share * push.force, push.point_B);
+      load.add_body_torque(share * push.torque);
+    } else {
+      load.add_world_force(share * push.force, push.point_B);
+      load.add_world_torque(share * push.torque);
+    }
     pushed_[slot] = 1;
-    scratch_.forced.push_back(slot);
+    scratch_.loaded.push_back(slot);
+    descend(slot, step_count_);
     wake_slot(slot);
     active.steps_left -= share;
   }

@@ -98,8 +98,7 @@ std::uint32_t World::take_slot() {
   paired_.push_back(0);
   calm_for_.push_back(0.0);
   rest_next_.push_back(slot);
-  scratch_.force.push_back(Vec3::Zero());
-  scratch_.torque.push_back(Vec3::Zero());
+  scratch_.load.emplace_back();
   scratch_.local.push_back(kWorld);
   return slot;
 }

@@ -13,6 +13,7 @@
 #include "collision/broad_phase.h"
 #include "dynamics/flight.h"
 #include "dynamics/island.h"
+#include "dynamics/smooth_motion.h"
 #include "world/contact_graph.h"
 #include "world/definition.h"
 #include "world/diagnostics.h"
@@ -134,8 +135,8 @@ class World {
   };
   /// Thrown away at any time; kept so that a step allocates nothing after warm-up.
   struct Scratch {
-    std::vector<Vec3> force, torque;  // by slot, zero between steps
-    std::vector<std::uint32_t> forced;
+    std::vector<Load> load;  // by slot, nothing between steps
+    std::vector<std::uint32_t> loaded;
     std::vector<GeometryPair> pairs;
     std::vector<GeometryPair> whole_pairs, split_pairs;  // pairs as found; those of them with a surface
     std::vector<std::uint32_t> triangles;
@@ -145,6 +146,7 @@ class World {
     std::vector<std::uint32_t> edge_source;  // contact index, or contacts().size() + tie index
     IslandBuilder builder;
     Islands islands;
+    SmoothSystem smooth;
     ContactProblem problem;
     std::vector<std::uint32_t> problem_slot;  // slot of each body of the problem
     std::vector<std::uint32_t> local;         // by slot: index in the problem, or kWorld
@@ -208,6 +210,7 @@ class World {
   Motion motion_in_flight(std::uint32_t slot, std::uint64_t step) const;
   void advance_free(std::uint32_t slot, const StepContext& step);
   void follow_flight(std::uint32_t slot);
+  void integrate_free(std::uint32_t slot, const StepContext& step);
   /// At the end of a step: lets go of a body that meets nobody for some steps. False: it has to be visited.
   bool try_lift(std::uint32_t slot);
   bool lift(std::uint32_t slot, std::uint64_t now);
@@ -219,6 +222,13 @@ class World {
   /// Off its flight: something acts on it, or moves it elsewhere.
   void land(std::uint32_t slot);
 
+  // smooth_step.cpp: smooth forces and nothing else. False: left to the steps of island_step.cpp, and nothing is moved.
+  bool advance_smooth_body(std::uint32_t slot, const StepContext& step);
+  bool advance_springs(std::size_t island, const StepContext& step);
+  bool has_springs_only(std::size_t island) const;
+  SmoothBody smooth_body(std::uint32_t slot) const;
+  bool store_smooth_motion(double h);
+
   // island_step.cpp: one island through one step.
   void advance_connected(std::size_t island, const StepContext& step);
   void bounce(ContactProblem& problem);
@@ -229,6 +239,7 @@ class World {
   void store_impulses();
   bool try_rest(double residual);
   void move_bodies(const StepContext& step);
+  /// Of forces that are the same at every orientation, and of gravity.
   Vec3 acceleration_of(std::uint32_t slot) const;
   void velocities_after_forces(std::uint32_t slot, double h, Vec3& v, Vec3& L) const;
   static bool is_finite(const Motion& motion);

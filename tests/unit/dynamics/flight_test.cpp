@@ -39,7 +39,8 @@ TEST(Flight, DampedFallNearsItsFinalSpeed) {
   start.v = Vec3(4, -2, 7);
   const Vec3 a(0, 0, -9.81);
   for (const double c : {1e-9, 1e-3, 0.03, 0.3, 3.0, 300.0}) {
-    const Flight flight(principal_body(Vec3(1, 2, 3)), start, a, c, 0.0);
+    const Flight flight(principal_body(Vec3(1, 2, 3)), start,
+                        FlightLoad{.acceleration = a, .linear_damping = c});
     for (const double t : {1e-3, 0.1, 1.0, 10.0}) {
       const long double ct = static_cast<long double>(c) * t, loss = -std::expm1(-ct);
       for (int i = 0; i < 3; ++i) {
@@ -57,7 +58,7 @@ TEST(Flight, DampedFallNearsItsFinalSpeed) {
 TEST(Flight, DampedTumblingIsFreeTumblingByASlowingClock) {
   const double c = 0.2;
   const MassProperties mass = principal_body(kPlate.I);
-  const Flight flight(mass, start_of(kPlate), Vec3::Zero(), 0.0, c);
+  const Flight flight(mass, start_of(kPlate), FlightLoad{.angular_damping = c});
   // The same by small steps: L e^-ct is nearly linear over one, to third order in it.
   const auto stepped = [&](int steps) {
     Motion body = start_of(kPlate);

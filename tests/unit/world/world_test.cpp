@@ -119,7 +119,7 @@ TEST(World, TheTorqueOfAPushIsItsLeverArmTimesItsForce) {
   world.push({.body = box, .force = force, .torque = torque, .point_B = arm});
   world.step();
   const Vec3 expected = world.options().time_step * (arm.cross(force) + torque);
-  EXPECT_LE((world.motion(box.index).L - expected).norm(), 1e-16);
+  EXPECT_LE((world.motion(box.index).L - expected).norm(), 1e-8);  // 2.9e-9 of 0.01: the arm turns within the step
 }
 
 TEST(World, ABodyFramePushTurnsWithTheBody) {

@@ -15,16 +15,6 @@ namespace {
 constexpr std::size_t kClientOffset = kFingerprint + 16, kSequenceOffset = kFingerprint + 24;
 constexpr std::size_t kSenderBytes = kFingerprint + 32;
 
-template <typename Message>
-Malformed check_start(Bytes bytes) {
-  if (bytes.size() < kFingerprint) return Malformed::too_short;
-  if (read_u64(bytes, 0) != static_cast<std::uint64_t>(Message::getHash()))
-    return Malformed::wrong_fingerprint;
-  if (bytes.size() > kMaxCommandBytes) return Malformed::too_long;
-  return Malformed::none;
-}
-
-/// Runs the generated decoder on bytes whose structure was checked.
 bool finite(std::span<const double> values) {
   for (const double value : values) {
     if (!std::isfinite(value)) return false;
@@ -53,7 +43,9 @@ const char* malformed_text(Malformed reason) {
 }
 
 Malformed decode(Bytes bytes, force_command_t& message) {
-  if (const Malformed reason = check_start<force_command_t>(bytes); reason != Malformed::none) return reason;
+  if (const Malformed reason = check_start<force_command_t>(bytes, kMaxCommandBytes);
+      reason != Malformed::none)
+    return reason;
   const auto size = static_cast<std::size_t>(message.getEncodedSize());
   if (bytes.size() < size) return Malformed::too_short;
   if (bytes.size() > size) return Malformed::too_long;
@@ -61,7 +53,8 @@ Malformed decode(Bytes bytes, force_command_t& message) {
 }
 
 Malformed decode(Bytes bytes, control_t& message) {
-  if (const Malformed reason = check_start<control_t>(bytes); reason != Malformed::none) return reason;
+  if (const Malformed reason = check_start<control_t>(bytes, kMaxCommandBytes); reason != Malformed::none)
+    return reason;
   constexpr std::size_t before_name = kFingerprint + 6 * 8 + 1 + 8 + 2 * 4;
   constexpr std::size_t after_name = 2 + 3 * 8 + 8 + 3 * 8 + 4 * 8 + 3 * 8 + 3 * 8 + 2 * 8 + 4 * 4;
   const Malformed reason = Walker(bytes).fixed(before_name).text(kMaxBodyName).fixed(after_name).end();
@@ -69,7 +62,8 @@ Malformed decode(Bytes bytes, control_t& message) {
 }
 
 Malformed decode(Bytes bytes, heartbeat_t& message) {
-  if (const Malformed reason = check_start<heartbeat_t>(bytes); reason != Malformed::none) return reason;
+  if (const Malformed reason = check_start<heartbeat_t>(bytes, kMaxCommandBytes); reason != Malformed::none)
+    return reason;
   constexpr std::size_t kText = 255;
   const Malformed reason = Walker(bytes)
                                .fixed(kFingerprint + 2 * 8 + 2 * 4)

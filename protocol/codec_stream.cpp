@@ -6,19 +6,11 @@ namespace {
 
 constexpr std::size_t kMaxStreamBytes = 1 << 16;  // a UDP datagram holds less
 
-template <typename Message>
-Malformed check_start(Bytes bytes) {
-  if (bytes.size() < kFingerprint) return Malformed::too_short;
-  if (read_u64(bytes, 0) != static_cast<std::uint64_t>(Message::getHash()))
-    return Malformed::wrong_fingerprint;
-  if (bytes.size() > kMaxStreamBytes) return Malformed::too_long;
-  return Malformed::none;
-}
-
 }  // namespace
 
 Malformed decode(Bytes bytes, state_t& message) {
-  if (const Malformed reason = check_start<state_t>(bytes); reason != Malformed::none) return reason;
+  if (const Malformed reason = check_start<state_t>(bytes, kMaxStreamBytes); reason != Malformed::none)
+    return reason;
   std::size_t n = 0;
   Walker walker(bytes);
   walker.fixed(kFingerprint + 6 * 8 + 4 + 2 * 2).count(n).fixed(n * (2 * 4 + 1 + 13 * 8));
@@ -26,14 +18,16 @@ Malformed decode(Bytes bytes, state_t& message) {
 }
 
 Malformed decode(Bytes bytes, stats_t& message) {
-  if (const Malformed reason = check_start<stats_t>(bytes); reason != Malformed::none) return reason;
+  if (const Malformed reason = check_start<stats_t>(bytes, kMaxStreamBytes); reason != Malformed::none)
+    return reason;
   const auto size = static_cast<std::size_t>(message.getEncodedSize());
   const Malformed reason = Walker(bytes).fixed(size).end();
   return reason == Malformed::none ? decode_checked(bytes, message) : reason;
 }
 
 Malformed decode(Bytes bytes, body_state_t& message) {
-  if (const Malformed reason = check_start<body_state_t>(bytes); reason != Malformed::none) return reason;
+  if (const Malformed reason = check_start<body_state_t>(bytes, kMaxStreamBytes); reason != Malformed::none)
+    return reason;
   constexpr std::size_t before_name = kFingerprint + 4 * 8 + 2 * 4 + 1;
   constexpr std::size_t after_name = (3 + 4 + 3 + 3 + 3 + 2) * 8;
   const Malformed reason = Walker(bytes).fixed(before_name).text(kMaxBodyName).fixed(after_name).end();
@@ -41,7 +35,8 @@ Malformed decode(Bytes bytes, body_state_t& message) {
 }
 
 Malformed decode(Bytes bytes, catalog_t& message) {
-  if (const Malformed reason = check_start<catalog_t>(bytes); reason != Malformed::none) return reason;
+  if (const Malformed reason = check_start<catalog_t>(bytes, kMaxStreamBytes); reason != Malformed::none)
+    return reason;
   std::size_t bodies = 0, shapes = 0, vertices = 0;
   Walker walker(bytes);
   walker.fixed(kFingerprint + 3 * 8 + 4 * 4).count(bodies).fixed(bodies * 2 * 4).texts(bodies, kMaxBodyName);
@@ -52,7 +47,8 @@ Malformed decode(Bytes bytes, catalog_t& message) {
 }
 
 Malformed decode(Bytes bytes, contacts_t& message) {
-  if (const Malformed reason = check_start<contacts_t>(bytes); reason != Malformed::none) return reason;
+  if (const Malformed reason = check_start<contacts_t>(bytes, kMaxStreamBytes); reason != Malformed::none)
+    return reason;
   std::size_t n = 0;
   Walker walker(bytes);
   walker.fixed(kFingerprint + 4 * 8 + 4 + 2 * 2).count(n).fixed(n * (2 * 4 + 10 * 8));
@@ -60,7 +56,8 @@ Malformed decode(Bytes bytes, contacts_t& message) {
 }
 
 Malformed decode(Bytes bytes, ack_t& message) {
-  if (const Malformed reason = check_start<ack_t>(bytes); reason != Malformed::none) return reason;
+  if (const Malformed reason = check_start<ack_t>(bytes, kMaxStreamBytes); reason != Malformed::none)
+    return reason;
   std::size_t n = 0;
   Walker walker(bytes);
   walker.fixed(kFingerprint + 3 * 8).count(n).fixed(n * (3 * 8 + 1 + 2 * 4)).texts(n, kMaxAckDetail);

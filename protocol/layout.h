@@ -74,6 +74,15 @@ class Walker {
   Malformed reason_ = Malformed::none;
 };
 
+/// The type's fingerprint stands at the start, and no more than `most` bytes follow in all.
+template <typename Message>
+Malformed check_start(Bytes bytes, std::size_t most) {
+  if (bytes.size() < kFingerprint) return Malformed::too_short;
+  if (read_u64(bytes, 0) != static_cast<std::uint64_t>(Message::getHash()))
+    return Malformed::wrong_fingerprint;
+  return bytes.size() > most ? Malformed::too_long : Malformed::none;
+}
+
 template <typename Message>
 Malformed decode_checked(Bytes bytes, Message& message) {
   const int size = static_cast<int>(bytes.size());

@@ -13,14 +13,11 @@
 namespace tumble {
 namespace {
 
-/// sin^2 of the angle between two edges below which their axis is no direction any more. What lies between that and
-/// kNearlyParallel is evaluated with all six extents, since its unit axis is rounded.
-constexpr double kParallel = 1e-24, kNearlyParallel = 1e-6;
+/// sin^2 of the angle between two edges below which their axis is evaluated with all six extents, since its unit axis is
+/// rounded. Below kParallel it is no direction any more.
+constexpr double kNearlyParallel = 1e-6;
 /// Axes whose separations differ by less than this share of the sizes are equal but for rounding: the first one stays.
-constexpr double kTie = 1e-14;
-/// Cosine of 0.1 rad. Edges that cross under faces as flat as this to their axis lie in a contact of these faces: it
-/// keeps the faces' whole polygon of points, only measured along the edges' axis.
-constexpr double kFlat = 0.995;
+constexpr double kAxisTie = 1e-14;
 
 /// a, b: half extents; R, t: pose of B in A; columns of R are B's axes.
 struct BoxPair {
@@ -220,7 +217,8 @@ Manifold cross_edges(const BoxPair& pair, const Axis& axis, double margin) {
 
 Manifold make_manifold(const BoxPair& pair, const Axis& axis, const BoxFace& face_a, const BoxFace& face_b,
                        double margin) {
-  const bool flat_a = face_a.cosine > kFlat, flat_b = face_b.cosine > kFlat;
+  const bool flat_a = face_a.cosine > ContactTolerance::kFlat,
+             flat_b = face_b.cosine > ContactTolerance::kFlat;
   if (axis.kind == Axis::Kind::edges && !(flat_a && flat_b)) return cross_edges(pair, axis, margin);
   return clip_faces(pair, axis, face_a, face_b, axis.kind == Axis::Kind::face_a || flat_a, margin);
 }
@@ -243,7 +241,7 @@ Manifold touch_along(const BoxPair& pair, const Axis& axis, const Pose& X_AB, do
 Manifold collide_box_box(const Box& a, const Box& b, const Pose& X_AB, double margin, PairCache& cache) {
   const Mat3 R = rotation_matrix(X_AB.q);
   const BoxPair pair{a.half_extents, b.half_extents, X_AB.p, R, R.cwiseAbs()};
-  const double tie = kTie * (pair.a.sum() + pair.b.sum());
+  const double tie = kAxisTie * (pair.a.sum() + pair.b.sum());
 
   Axis best = find_face_axis(pair, tie);
   if (best.separation <= margin) {

@@ -14,17 +14,12 @@
 namespace tumble {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-/// sin^2 of the angle between core and edge below which their common normal is noise.
-constexpr double kParallel = 1e-24;
-/// Cosine of 0.1 rad: a face this flat to the normal carries the core with both its ends, measured along that normal.
-constexpr double kFlat = 0.995;
 /// Share of the radii below which two separations are equal: the rounding of one is a few 1e-16.
-constexpr double kTie = 1e-15;
+constexpr double kMeetingTie = 1e-15;
 /// Faces whose heights are kept; those of larger hulls are computed again where needed.
-constexpr std::size_t kKeptFaces = 512;
+constexpr std::size_t kKeptHeights = 512;
 /// In place of an edge in Meeting.
-constexpr std::uint32_t kNone = 0xffffffffu;
+constexpr std::uint32_t kNoFeature = 0xffffffffu;
 
 /// Heights of the core over the polytope's faces: its centre's, and how much its end at +1 is higher.
 class CoreHeights {
@@ -36,10 +31,10 @@ class CoreHeights {
     double at(double s) const { return centre + s * rise; }
   };
   CoreHeights(const Polytope& polytope, const Segment& core) : polytope_(polytope), core_(core) {
-    const std::size_t kept = std::min(polytope.faces.size(), kKeptFaces);
+    const std::size_t kept = std::min(polytope.faces.size(), kKeptHeights);
     for (std::size_t i = 0; i < kept; ++i) heights_[i] = compute(i);
   }
-  Height operator[](std::size_t face) const { return face < kKeptFaces ? heights_[face] : compute(face); }
+  Height operator[](std::size_t face) const { return face < kKeptHeights ? heights_[face] : compute(face); }
 
  private:
   Height compute(std::size_t i) const {
@@ -48,14 +43,14 @@ class CoreHeights {
   }
   const Polytope& polytope_;
   const Segment& core_;
-  std::array<Height, kKeptFaces> heights_;
+  std::array<Height, kKeptHeights> heights_;
 };
 
 /// Where the core meets the polytope, in the polytope's frame P; the normal points from the polytope to the core.
 struct Meeting {
   double distance = -kInfinity;
   Vec3 normal_P = Vec3::UnitZ();
-  std::uint32_t edge = kNone;  ///< Or else a face.
+  std::uint32_t edge = kNoFeature;  ///< Or else a face.
   std::uint32_t face = 0;
 };
 
@@ -110,7 +105,7 @@ Meeting find_closest(const Polytope& polytope, const Segment& core, const CoreHe
     }
     const double height = heights[face].at(side);
     if (height > 0.0 && height < best.distance && is_over_face(polytope, face, core.at(side))) {
-      best = {height, polytope.faces[face].normal, kNone, face};
+      best = {height, polytope.faces[face].normal, kNoFeature, face};
     }
   }
   for (std::uint32_t i = 0; i < polytope.edges.size(); ++i) {
@@ -187,20 +182,20 @@ Manifold meet_edge(const CapsuleQuery& q, const Meeting& meeting) {
 
 Manifold make_manifold(const CapsuleQuery& q, const Meeting& meeting) {
   std::uint32_t face = meeting.face;
-  if (meeting.edge != kNone) {
+  if (meeting.edge != kNoFeature) {
     face = flatter_face(q.polytope, q.polytope.edges[meeting.edge], meeting.normal_P);
   }
   Manifold manifold;
-  if (q.polytope.faces[face].normal.dot(meeting.normal_P) > kFlat)
+  if (q.polytope.faces[face].normal.dot(meeting.normal_P) > ContactTolerance::kFlat)
     manifold = lie_on_face(q, face, meeting.normal_P);
-  if (manifold.count == 0 && meeting.edge != kNone) manifold = meet_edge(q, meeting);
+  if (manifold.count == 0 && meeting.edge != kNoFeature) manifold = meet_edge(q, meeting);
   set_deepest(manifold, meeting.distance - q.radius);
   return manifold;
 }
 
 Manifold collide_core(const CapsuleQuery& q, PairCache& cache) {
   const double enough = q.radius + q.margin;
-  const double tie = kTie * (q.polytope.radius + q.radius + q.core_P.reach.norm());
+  const double tie = kMeetingTie * (q.polytope.radius + q.radius + q.core_P.reach.norm());
   const auto remember = [&](const Meeting& meeting) {
     cache.axis_A = q.X_AP.q * -meeting.normal_P;
     cache.gap = meeting.distance - q.radius;

@@ -12,9 +12,6 @@
 namespace tumble {
 namespace {
 
-/// Cosine of 0.1 rad: as in collide_box_box.cpp, edges that cross under faces this flat to their axis keep the polygon.
-constexpr double kFlat = 0.995;
-
 /// A face and the pose of its body in A.
 struct PlacedFace {
   const Polytope& body;
@@ -110,7 +107,7 @@ Manifold make_manifold(const PolytopePair& pair, const Facet& facet, double marg
   }
   const double cosine_a = pair.a.faces[face_a].normal.dot(facet.normal_A),
                cosine_b = pair.b.faces[face_b].normal.dot(towards_a_B);
-  const bool flat_a = cosine_a > kFlat, flat_b = cosine_b > kFlat;
+  const bool flat_a = cosine_a > ContactTolerance::kFlat, flat_b = cosine_b > ContactTolerance::kFlat;
   face_to_face = std::min(cosine_a, cosine_b) > ContactTolerance::kFaceToFace;
   if (facet.kind == Facet::Kind::edges && !(flat_a && flat_b)) return cross_edges(pair, facet, margin);
   const PlacedFace a{pair.a, pair.a.faces[face_a], identity, zero};

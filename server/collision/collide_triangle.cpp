@@ -20,20 +20,17 @@
 namespace tumble {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-/// sin^2 of the angle between edges below which they span no direction.
-constexpr double kParallel = 1e-24;
 /// Cosine above which a direction is the triangle's own normal: what differs is rounding.
 constexpr double kSameNormal = 1.0 - 2e-16;
 /// Rounding of a height, as part of the size.
-constexpr double kRounding = 64.0 * std::numeric_limits<double>::epsilon();
+constexpr double kHeightRounding = 64.0 * std::numeric_limits<double>::epsilon();
 /// Overlap, as part of the body's radius, from which the corners' cones are searched as well. Up to there a wrong guess
 /// near a corner pushes by no more than that.
 constexpr double kDeep = 1e-3;
-constexpr std::size_t kRing = 32;  // edges of a corner that are looked at
+constexpr std::size_t kCornerEdges = 32;  // edges of a corner that are looked at
 
 /// A direction and the features that meet along it.
-struct Meeting {
+struct TriangleMeeting {
   enum class Kind { own_face, neighbour, body_face, edges, vertex };
   Kind kind = Kind::own_face;
   double separation = -kInfinity;  // of the cores
@@ -62,15 +59,15 @@ class TriangleQuery {
     if (best_.separation > enough_) return {};
     if (best_.separation < -kDeep * core_.radius) meet_rings();
     switch (best_.kind) {
-      case Meeting::Kind::own_face:
+      case TriangleMeeting::Kind::own_face:
         return lie_on_triangle();
-      case Meeting::Kind::neighbour:
+      case TriangleMeeting::Kind::neighbour:
         return {};
-      case Meeting::Kind::body_face:
+      case TriangleMeeting::Kind::body_face:
         return lie_on_body();
-      case Meeting::Kind::edges:
+      case TriangleMeeting::Kind::edges:
         return cross_edges();
-      case Meeting::Kind::vertex:
+      case TriangleMeeting::Kind::vertex:
         break;
     }
     const double separation = best_.separation - radius_;
@@ -98,7 +95,11 @@ class TriangleQuery {
       const double separation = f.dot(t_.corner[top]) - core_.faces[i].offset;
       if (separation > enough_) return false;
       if (separation <= best_.separation + preference_.face || !t_.corner_allows(top, -f)) continue;
-      best_ = {.kind = Meeting::Kind::body_face, .separation = separation, .c = -f, .body = i, .edge = top};
+      best_ = {.kind = TriangleMeeting::Kind::body_face,
+               .separation = separation,
+               .c = -f,
+               .body = i,
+               .edge = top};
     }
     return true;
   }
@@ -109,7 +110,7 @@ class TriangleQuery {
       const Vec3& c = t_.beyond_normal[k];
       const double separation = lowest(c) - c.dot(t_.corner[k]);
       if (separation > best_.separation) {
-        best_ = {.kind = Meeting::Kind::neighbour, .separation = separation, .c = c, .edge = k};
+        best_ = {.kind = TriangleMeeting::Kind::neighbour, .separation = separation, .c = c, .edge = k};
       }
     }
   }
@@ -130,12 +131,12 @@ class TriangleQuery {
       const double height = c.dot(tail) - offset;
       if (height <= best_.separation || !t_.edge_allows(k, c)) continue;
       const double separation = lowest(c) - offset;
-      if (height > separation + kRounding * core_.radius) continue;  // another edge is the lowest
-      if (best_.kind != Meeting::Kind::edges &&
+      if (height > separation + kHeightRounding * core_.radius) continue;  // another edge is the lowest
+      if (best_.kind != TriangleMeeting::Kind::edges &&
           !preference_.takes_edge(best_.separation, best_.c, separation, c, sin2)) {
         continue;
       }
-      best_ = {.kind = Meeting::Kind::edges, .separation = separation, .c = c, .body = i, .edge = k};
+      best_ = {.kind = TriangleMeeting::Kind::edges, .separation = separation, .c = c, .body = i, .edge = k};
     }
   }
 
@@ -151,7 +152,7 @@ class TriangleQuery {
         if (!(s > 0.0 && s < 1.0)) continue;
         const Vec3 foot = t_.corner[k] + s * side;
         consider(
-            {.kind = is_segment ? Meeting::Kind::edges : Meeting::Kind::vertex,
+            {.kind = is_segment ? TriangleMeeting::Kind::edges : TriangleMeeting::Kind::vertex,
              .body = is_segment ? 0 : name_crossing(0, 0, t_.vertex[k], t_.vertex[PlacedTriangle::next(k)]),
              .edge = k,
              .p_body = p,
@@ -169,7 +170,7 @@ class TriangleQuery {
   }
 
   void meet_corner(std::size_t k, const Vec3& p) {
-    consider({.kind = Meeting::Kind::vertex,
+    consider({.kind = TriangleMeeting::Kind::vertex,
               .body = name_vertex(false, t_.vertex[k]),
               .edge = k,
               .p_body = p,
@@ -179,7 +180,7 @@ class TriangleQuery {
 
   /// Takes the line between the two points if it separates most, is allowed, and the core has no lower point along it.
   template <typename Allows>
-  void consider(Meeting meeting, Allows allows) {
+  void consider(TriangleMeeting meeting, Allows allows) {
     const Vec3 gap = meeting.p_body - meeting.p_triangle;
     meeting.separation = gap.norm();
     if (meeting.separation <= best_.separation || !(meeting.separation > 0.0)) return;
@@ -195,7 +196,7 @@ class TriangleQuery {
   /// A deep body may be nearer to the outside along a normal or an edge that the triangle has only a corner of: what
   /// wins in a corner's cone belongs to the triangles around it.
   void meet_rings() {
-    std::array<Vec3, kRing> others;
+    std::array<Vec3, kCornerEdges> others;
     const Vec3& low = core_.vertices[descend(core_, best_.c, 0, -kInfinity).vertex];
     for (std::size_t k = 0; k < 3; ++k) {
       const std::size_t count = t_.surface.ring(t_.vertex[k], others);
@@ -222,7 +223,7 @@ class TriangleQuery {
       if (c.dot(low - t_.corner[k]) <= best_.separation + preference_.edge) continue;
       const double separation = lowest(c) - c.dot(t_.corner[k]);
       if (separation <= best_.separation + preference_.edge || !t_.corner_allows(k, c)) continue;
-      best_ = {.kind = Meeting::Kind::neighbour, .separation = separation, .c = c, .edge = k};
+      best_ = {.kind = TriangleMeeting::Kind::neighbour, .separation = separation, .c = c, .edge = k};
     }
   }
 
@@ -328,7 +329,7 @@ class TriangleQuery {
   const double radius_, enough_, margin_;  // [m]
   const PlacedTriangle& t_;
   AxisPreference preference_;
-  Meeting best_;
+  TriangleMeeting best_;
 };
 
 }  // namespace

@@ -11,10 +11,10 @@ namespace tumble {
 namespace {
 
 /// Sine of the angle below which a direction is a normal of the surface itself: what iterative searches leave.
-constexpr double kSameNormal = 1e-6;
+constexpr double kSameFace = 1e-6;
 
 bool same_direction(const Vec3& a, const Vec3& b) {
-  return (a - b).squaredNorm() <= kSameNormal * kSameNormal;
+  return (a - b).squaredNorm() <= kSameFace * kSameFace;
 }
 
 Manifold ask(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB, double margin) {
@@ -31,7 +31,7 @@ bool lies_inside(const PlacedTriangle& t, const Vec3& p, double tolerance) {
   return true;
 }
 
-/// As PlacedTriangle asks, for a direction that is known up to kSameNormal: across an edge it is taken as exactly so.
+/// As PlacedTriangle asks, for a direction that is known up to kSameFace: across an edge it is taken as exactly so.
 bool allows(const PlacedTriangle& t, const Vec3& c) {
   const std::size_t top = t.top(c);
   if (t.corner_allows(top, c)) return true;
@@ -39,7 +39,7 @@ bool allows(const PlacedTriangle& t, const Vec3& c) {
     const Vec3 edge = t.along(k).normalized();
     const double slant = edge.dot(c);
     const bool borders = t.bend[k] == Bend::convex || t.bend[k] == Bend::open;
-    if (borders && std::abs(slant) <= kSameNormal && t.edge_allows(k, (c - slant * edge).normalized()))
+    if (borders && std::abs(slant) <= kSameFace && t.edge_allows(k, (c - slant * edge).normalized()))
       return true;
   }
   return false;

@@ -19,7 +19,7 @@ namespace {
 constexpr std::uint32_t kNone = 0xffffffffu;
 
 /// Points closer to one plane than this share of their extent span no volume worth the name.
-constexpr double kFlat = 1e-9;
+constexpr double kNoVolume = 1e-9;
 
 /// Triangles whose corners lie this near to a face's plane belong to the face, as a share of the extent: meshes in
 /// single precision are coplanar to 6e-8. And at most this share of the body's depth below the face, for thin plates.
@@ -86,11 +86,12 @@ std::array<std::uint32_t, 4> find_tetrahedron(const std::vector<Vec3>& points, d
   const Vec3 line = (points[b] - points[a]).normalized();
   const auto [c, from_line] =
       furthest(points, [&](const Vec3& p) { return line.cross(p - points[a]).norm(); });
-  if (from_line <= kFlat * extent) throw std::invalid_argument("convex hull: all points are on one line");
+  if (from_line <= kNoVolume * extent) throw std::invalid_argument("convex hull: all points are on one line");
   const Vec3 normal = line.cross(points[c] - points[a]).normalized();
   const auto [d, from_plane] =
       furthest(points, [&](const Vec3& p) { return std::abs(normal.dot(p - points[a])); });
-  if (from_plane <= kFlat * extent) throw std::invalid_argument("convex hull: all points are in one plane");
+  if (from_plane <= kNoVolume * extent)
+    throw std::invalid_argument("convex hull: all points are in one plane");
   return {a, b, c, d};
 }
 

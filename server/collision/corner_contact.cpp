@@ -9,7 +9,7 @@ namespace tumble {
 namespace {
 
 /// Share of the radii to which the axis and the points made along it know their separation.
-constexpr double kRounding = 1e-14;
+constexpr double kAxisRounding = 1e-14;
 /// Share of the radii by which clipping may miss the lowest point of bodies that lie face to face: a thousandth of the
 /// width times their tilt.
 constexpr double kLying = 1e-6;
@@ -17,7 +17,7 @@ constexpr double kLying = 1e-6;
 }  // namespace
 
 bool touches_along_axis(Manifold& manifold, double separation, double size) {
-  const double rounding = kRounding * size;
+  const double rounding = kAxisRounding * size;
   if (separation >= -rounding && least_separation(manifold) > separation + rounding) return false;
   set_deepest(manifold, separation);
   return true;
@@ -37,7 +37,7 @@ Manifold contact_of_closest_points(const Manifold& along_axis, double separation
     return manifold;
   }
   const Vec3 middle_A = 0.5 * (distance.a_A + distance.b_A);
-  if (distance.overlap || distance.upper <= separation + kRounding * size) {
+  if (distance.overlap || distance.upper <= separation + kAxisRounding * size) {
     if (manifold.count == 0)
       return single_point(manifold.normal_A, middle_A, separation, margin, name_corners());
     set_deepest(manifold, separation);

@@ -12,11 +12,8 @@
 namespace tumble {
 namespace {
 
-/// Rounding of one separation, as multiple of epsilon times the lengths involved (gjk.cpp has the count).
-constexpr double kRounding = 32.0 * std::numeric_limits<double>::epsilon();
-
 /// Planes are equally far apart within this share of the rounding.
-constexpr double kTie = 0.25;
+constexpr double kPlaneTie = 0.25;
 
 /// A shape without its rounding.
 class Core {
@@ -46,7 +43,7 @@ class DistanceSearch {
         p_AB_(X_AB.p),
         settings_(settings),
         radii_(a_.radius() + b_.radius()),
-        error_(kRounding * (bounding_radius(a) + bounding_radius(b) + X_AB.p.norm())) {}
+        error_(kSeparationRounding * (bounding_radius(a) + bounding_radius(b) + X_AB.p.norm())) {}
 
   Distance run() {
     search(start());
@@ -74,7 +71,7 @@ class DistanceSearch {
       const SimplexPoint added = point(a_.support(d), b_.support(-(R_AB_.transpose() * d)));
       const double separation = d.dot(added.difference);
       // Of equal planes the later: it comes from the present simplex, the first perhaps from a warm start.
-      if (separation > lower_ - kTie * error_) lower_ = separation, axis_A_ = d;
+      if (separation > lower_ - kPlaneTie * error_) lower_ = separation, axis_A_ = d;
       if (upper_ - lower_ <= enough || lower_ - radii_ - error_ > settings_.beyond) return;
       if (simplex_.contains(added)) return;
       Simplex next = simplex_;

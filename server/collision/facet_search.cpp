@@ -10,15 +10,12 @@
 namespace tumble {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-/// sin^2 of the angle between edges below which they span no facet; the faces cover its direction.
-constexpr double kParallel = 1e-24;
 /// Facets this little behind the best [parts of the smaller radius] are still evaluated, so that the lead is known and
 /// rounding can't prune a winner.
 constexpr double kLeadSought = 1e-3;
 /// Share of the radii below which two separations are equal: their rounding, and what a nearly touching pair of arcs
 /// may lead by although its edges do not cross.
-constexpr double kTie = 1e-14;
+constexpr double kFacetTie = 1e-14;
 /// Faces of each body whose bounds are kept; those of larger hulls are computed again where needed.
 constexpr std::size_t kKeptFaces = 512;
 /// Edges of each side that are looked at together.
@@ -29,7 +26,7 @@ constexpr std::size_t kManyPairs = 256;
 constexpr std::uint32_t kIndexBits = 15, kIndexLimit = 1u << kIndexBits;
 
 double tie_of(const PolytopePair& pair) {
-  return kTie * (pair.a.radius + pair.b.radius);
+  return kFacetTie * (pair.a.radius + pair.b.radius);
 }
 
 std::uint32_t encode(const Facet& facet) {

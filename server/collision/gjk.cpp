@@ -12,10 +12,7 @@ namespace tumble {
 namespace {
 
 /// libccd's default is endless, and it does cycle on touching boxes.
-constexpr unsigned long kMaxIterations = 64;
-/// Rounding of one separation, as multiple of epsilon times the lengths involved: two supports of three products each,
-/// a transform and a normalised axis stay below 16.
-constexpr double kRounding = 32.0 * std::numeric_limits<double>::epsilon();
+constexpr unsigned long kGjkIterations = 64;
 
 /// State of one run, shared by the two callbacks. libccd asks for A along dir, then for B along -dir.
 struct Run {
@@ -72,14 +69,14 @@ GjkAnswer decide_apart(const Shape& a, const Shape& b, const Pose& X_AB) {
   ccd.first_dir = centre_line;
   ccd.support1 = support_a;
   ccd.support2 = support_b;
-  ccd.max_iterations = kMaxIterations;
+  ccd.max_iterations = kGjkIterations;
   const bool intersect = ccdGJKIntersect(&run, &run, &ccd) != 0;
 
   GjkAnswer answer{GjkAnswer::Kind::touching, Vec3::UnitZ(), 0.0};
   answer.budget_hit = run.calls > kGjkCallBudget;
   const double length = run.direction_A.stableNorm();
   if (length > 0.0 && std::isfinite(length)) answer.axis_A = run.direction_A / length;
-  const double error = kRounding * (size + X_AB.p.norm());
+  const double error = kSeparationRounding * (size + X_AB.p.norm());
   answer.gap = separation_along(a, b, run.R_AB, run.p_AB, answer.axis_A) - error;
   if (answer.gap > 0.0) {
     answer.kind = GjkAnswer::Kind::apart;

@@ -15,7 +15,6 @@ namespace {
 /// A vertex is joined to four along the grid and two along the diagonals.
 constexpr std::size_t kRing = 6;
 constexpr std::uint64_t kMaxHeights = 100'000'000;
-constexpr double kMaxCoordinate = 1e9;  // [m], as for bodies
 
 void check_spacing(const char* field, double spacing) {
   if (!(spacing > 0.0) || !(spacing <= kMaxCoordinate)) {

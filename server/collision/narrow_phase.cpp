@@ -70,9 +70,6 @@ constexpr std::array<std::array<PairFunction, kShapeTypes>, kShapeTypes> kMatrix
 }};
 // clang-format on
 
-/// Rounding of one separation, as multiple of epsilon times the lengths involved.
-constexpr double kRounding = 32.0 * std::numeric_limits<double>::epsilon();
-
 /// Upper bound of |R - R0| (spectral norm) between the orientations: 2 sin(angle / 2) <= 2 |q - q0|.
 double turned_by(const Quat& q, const Quat& q0) {
   const double sign = q.dot(q0) < 0.0 ? -1.0 : 1.0;
@@ -112,7 +109,7 @@ class Query {
     const double radius_b = bounding_radius(b_);
     const double bound =
         cache_.gap + cache_.axis_A.dot(X_AB_.p - cache_.p_AB) - turned_by(X_AB_.q, cache_.q_AB) * radius_b;
-    return bound > margin_ + kRounding * (X_AB_.p.norm() + radius_b);
+    return bound > margin_ + kSeparationRounding * (X_AB_.p.norm() + radius_b);
   }
 
   bool beyond_on_cached_axis() {
@@ -142,7 +139,9 @@ class Query {
   }
 
   /// Of a separation [m].
-  double error() const { return kRounding * (bounding_radius(a_) + bounding_radius(b_) + X_AB_.p.norm()); }
+  double error() const {
+    return kSeparationRounding * (bounding_radius(a_) + bounding_radius(b_) + X_AB_.p.norm());
+  }
 
   void remember_gap(const Vec3& axis_A, double gap) {
     cache_.axis_A = axis_A;

@@ -129,7 +129,7 @@ struct PatchOf {
 };
 
 /// Collects pairs of points, one of each body, that lie behind each other along n.
-struct Meeting {
+struct FeatureMeeting {
   const PatchContact& contact;
   ManifoldBuilder& builder;
   double lowest = std::numeric_limits<double>::infinity();
@@ -217,7 +217,7 @@ void visit_rim_crossings(const Patch& a, const Patch& b, const Vec3& n, Visit&& 
 }
 
 /// Lines that run side by side (within 1e-3 rad): the ends of their common part.
-void meet_lines(const Patch& a, const Patch& b, Meeting& meeting) {
+void meet_lines(const Patch& a, const Patch& b, FeatureMeeting& meeting) {
   constexpr double kSideBySide = 1e-6;  // sin^2
   const Vec3 along_a = a.corners[1] - a.corners[0], along_b = b.corners[1] - b.corners[0];
   const double aa = along_a.squaredNorm(), ab = along_a.dot(along_b);
@@ -232,7 +232,7 @@ void meet_lines(const Patch& a, const Patch& b, Meeting& meeting) {
   }
 }
 
-void meet(const Patch& a, const Patch& b, Meeting& meeting) {
+void meet(const Patch& a, const Patch& b, FeatureMeeting& meeting) {
   const Vec3& n = meeting.contact.normal_A;
   if (b.is_flat()) {
     for (std::size_t i = 0; i < static_cast<std::size_t>(a.count); ++i) {
@@ -276,7 +276,7 @@ template <typename AddPoints>
 Manifold collect(const PatchContact& contact, double width, double margin, AddPoints&& add_points) {
   const double merge = kSame * width;
   ManifoldBuilder builder(contact.normal_A, margin, merge);
-  Meeting meeting{contact, builder};
+  FeatureMeeting meeting{contact, builder};
   add_points(meeting);
   if (!(meeting.lowest <= contact.separation + kSame * width)) {
     builder = ManifoldBuilder(contact.normal_A, margin, merge);
@@ -308,7 +308,7 @@ Patch patch_towards(const ConvexPieces& shape, const Vec3& n_A) {
 
 Manifold make_patch_manifold(const Patch& a, const Patch& b, const PatchContact& contact, double margin) {
   const double width = std::min(a.width > 0.0 ? a.width : b.width, b.width > 0.0 ? b.width : a.width);
-  return collect(contact, width, margin, [&](Meeting& meeting) {
+  return collect(contact, width, margin, [&](FeatureMeeting& meeting) {
     if (a.kind == Patch::Kind::line && b.kind == Patch::Kind::line) meet_lines(a, b, meeting);
     meet(a, b, meeting);
   });
@@ -317,7 +317,7 @@ Manifold make_patch_manifold(const Patch& a, const Patch& b, const PatchContact&
 Manifold make_ground_manifold(const Patch& b, const Vec3& lowest, double margin) {
   const Vec3 foot(lowest.x(), lowest.y(), 0.0);
   const PatchContact contact{Vec3::UnitZ(), lowest.z(), foot, lowest, 0.0, 0.0};
-  return collect(contact, b.width, margin, [&](Meeting& meeting) {
+  return collect(contact, b.width, margin, [&](FeatureMeeting& meeting) {
     for (std::size_t i = 0; i < static_cast<std::size_t>(b.count); ++i) {
       const Vec3& p = b.corners[i];
       meeting.add({p.x(), p.y(), 0.0}, p, b.names[i]);

@@ -37,7 +37,7 @@ constexpr std::array<ConvexHull::Edge, 12> box_edges() {
 }
 
 /// Looking at every vertex costs no more than descending, up to here.
-constexpr std::size_t kScanVertices = 40;
+constexpr std::size_t kScannedVertices = 40;
 constexpr std::array<std::uint32_t, 24> kBoxNeighbours = box_neighbours();
 constexpr std::array<ConvexHull::Edge, 12> kBoxEdges = box_edges();
 
@@ -87,7 +87,7 @@ Polytope view_of(const ConvexHull& hull) {
 }
 
 Lowest descend(const Polytope& polytope, const Vec3& d, std::uint32_t start, double enough) {
-  if (polytope.vertices.size() <= kScanVertices) {
+  if (polytope.vertices.size() <= kScannedVertices) {
     Lowest lowest{0, d.dot(polytope.vertices[0])};
     for (std::uint32_t i = 1; i < polytope.vertices.size(); ++i) {
       const double height = d.dot(polytope.vertices[i]);

@@ -9,8 +9,6 @@
 namespace tumble {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
 /// The part of a line inside a convex shape, as boundaries cut it down.
 class Crossing {
  public:

@@ -8,6 +8,9 @@
 
 namespace tumble {
 
+/// sin^2 of the angle between two lines below which their common normal is noise.
+inline constexpr double kParallel = 1e-24;
+
 /// Points centre + s * reach with s in [-1, 1].
 struct Segment {
   Vec3 centre, reach;
@@ -26,7 +29,6 @@ struct SegmentPair {
 /// Closest points by clamping one parameter after the other (Ericson, Real-Time Collision Detection, 5.1.9). On
 /// parallel segments the middle of the part that lies side by side.
 inline SegmentPair closest_points(const Segment& a, const Segment& b) {
-  constexpr double kParallel = 1e-24;  // sin^2 below which the crossing point is noise
   const double aa = a.reach.squaredNorm(), bb = b.reach.squaredNorm(), ab = a.reach.dot(b.reach);
   const Vec3 d = a.centre - b.centre;
   const double cross = a.reach.cross(b.reach).squaredNorm();

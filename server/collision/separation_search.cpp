@@ -11,14 +11,13 @@
 namespace tumble {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// Faces of the difference closer to the best depth than this, of the shapes' size, hide nothing worth finding.
 constexpr double kTolerance = 1e-11;
 /// Furthest points asked before a search ends with what it has: only where a whole circle or sphere of directions is
 /// equally good, as between coaxial shapes, is the best never proven best. Others need 10 to 60.
 constexpr int kMaxRounds = 120;
 /// Of one reach, of the shapes' size.
-constexpr double kRounding = 1e-14;
+constexpr double kReachRounding = 1e-14;
 /// Of the shapes' size: second derivatives of a reach below this are none, slopes below this don't matter.
 constexpr double kFlatCurvature = 1e-13, kLevelSlope = 1e-11;
 /// ... and an optimum may bend down by this much along a level direction.
@@ -45,7 +44,7 @@ struct Reach {
 };
 
 /// A direction that could be the best, with the pieces believed to be furthest there.
-struct Candidate {
+struct CandidateDirection {
   Vec3 n = Vec3::UnitZ();
   double h = kInfinity;
   int count = 0;
@@ -87,7 +86,7 @@ class Search {
     ++evaluations_;
     const ConvexPieces::Point a = a_.furthest(n), b = b_.furthest(-n);
     const Reach reach{n, a.p_A, b.p_A, {a.piece, b.piece}};
-    if (reach.h() < best_.h - (best_.optimal ? kRounding * size_ : 0.0)) {
+    if (reach.h() < best_.h - (best_.optimal ? kReachRounding * size_ : 0.0)) {
       best_ = {n, reach.h(), 0, {}, false};
       best_.add(reach.pieces);
     }
@@ -108,30 +107,30 @@ class Search {
   bool start(const Vec3& guess);
   void expand();
   bool explains(const DifferenceHull::Face& face, const Reach& reach) const;
-  bool converge(Candidate& candidate) const;
+  bool converge(CandidateDirection& candidate) const;
   enum class Ending { nowhere, same_optimum, better_optimum };
-  Ending polish(Candidate candidate);
-  bool is_minimum(const Candidate& c) const;
+  Ending polish(CandidateDirection candidate);
+  bool is_minimum(const CandidateDirection& c) const;
   void grow_to_best();
   double newton_step(double slope, double second) const;
-  bool step_on_surface(Candidate& c) const;
+  bool step_on_surface(CandidateDirection& c) const;
   struct Ridge {
     Vec3 n, u;
     double slope, second;
   };
-  std::optional<Vec3> onto_ridge(const Candidate& c, const Vec3& n_near) const;
-  std::optional<Ridge> ridge_at(const Candidate& c, const Vec3& n_near) const;
-  bool step_on_ridge(Candidate& c) const;
-  bool step_to_face(Candidate& c) const;
-  bool include(Candidate& c, const Reach& further) const;
-  std::array<double, 3> weights(const Candidate& c) const;
+  std::optional<Vec3> onto_ridge(const CandidateDirection& c, const Vec3& n_near) const;
+  std::optional<Ridge> ridge_at(const CandidateDirection& c, const Vec3& n_near) const;
+  bool step_on_ridge(CandidateDirection& c) const;
+  bool step_to_face(CandidateDirection& c) const;
+  bool include(CandidateDirection& c, const Reach& further) const;
+  std::array<double, 3> weights(const CandidateDirection& c) const;
   void find_points(Separation& result) const;
   Separation finish();
 
   const ConvexPieces &a_, &b_;
   double rounding_, enough_, size_;
   DifferenceHull hull_;
-  Candidate best_;
+  CandidateDirection best_;
   std::optional<DifferenceHull::Face> nearest_;  ///< To the origin, while that is outside.
   double lead_ = 0.0;
   int evaluations_ = 0;
@@ -160,7 +159,7 @@ double Search::newton_step(double slope, double second) const {
 }
 
 /// Minimum of a smooth piece on the sphere of directions: gradient k - t n, Hessian W - t across n.
-bool Search::step_on_surface(Candidate& c) const {
+bool Search::step_on_surface(CandidateDirection& c) const {
   const Vec3 k = point(c.pieces[0], c.n);
   const double t = c.n.dot(k);
   const Vec3 u = perpendicular_to(c.n), v = c.n.cross(u);
@@ -179,7 +178,7 @@ bool Search::step_on_surface(Candidate& c) const {
 }
 
 /// Along the direction nearest by the two pieces reach equally far: across e = k1 - k0 as seen from n_near.
-std::optional<Vec3> Search::onto_ridge(const Candidate& c, const Vec3& n_near) const {
+std::optional<Vec3> Search::onto_ridge(const CandidateDirection& c, const Vec3& n_near) const {
   const Vec3 e = point(c.pieces[1], n_near) - point(c.pieces[0], n_near);
   const double ee = e.squaredNorm();
   if (!(ee > 0.0)) return std::nullopt;
@@ -192,7 +191,7 @@ std::optional<Vec3> Search::onto_ridge(const Candidate& c, const Vec3& n_near) c
 /// Two pieces reach equally far on a curve across e = k1 - k0; along it, u, the reach of the mixture with the weights of
 /// the edge's point nearest to the origin has the derivatives u . k and u W u - t. Both are taken on the curve: beside it,
 /// where a long step ends, the curvature of a rim can have the other sign.
-std::optional<Search::Ridge> Search::ridge_at(const Candidate& c, const Vec3& n_near) const {
+std::optional<Search::Ridge> Search::ridge_at(const CandidateDirection& c, const Vec3& n_near) const {
   const std::optional<Vec3> foot = onto_ridge(c, n_near), on = foot ? onto_ridge(c, *foot) : foot;
   if (!on) return std::nullopt;
   Ridge ridge;
@@ -207,7 +206,7 @@ std::optional<Search::Ridge> Search::ridge_at(const Candidate& c, const Vec3& n_
   return ridge;
 }
 
-bool Search::step_on_ridge(Candidate& c) const {
+bool Search::step_on_ridge(CandidateDirection& c) const {
   const std::optional<Ridge> ridge = ridge_at(c, c.n);
   if (!ridge) return false;
   const double step = newton_step(ridge->slope, ridge->second);
@@ -216,7 +215,7 @@ bool Search::step_on_ridge(Candidate& c) const {
 }
 
 /// Three pieces reach equally far along the normal of the plane through their points.
-bool Search::step_to_face(Candidate& c) const {
+bool Search::step_to_face(CandidateDirection& c) const {
   const Vec3 k0 = point(c.pieces[0], c.n);
   const Vec3 e1 = point(c.pieces[1], c.n) - k0, e2 = point(c.pieces[2], c.n) - k0;
   const Vec3 cross = e1.cross(e2);
@@ -227,7 +226,7 @@ bool Search::step_to_face(Candidate& c) const {
 }
 
 /// Of the furthest points of its pieces, for the point of their plane that lies behind the origin along n.
-std::array<double, 3> Search::weights(const Candidate& c) const {
+std::array<double, 3> Search::weights(const CandidateDirection& c) const {
   if (c.count == 1) return {1.0, 0.0, 0.0};
   const Vec3 k0 = point(c.pieces[0], c.n), e1 = point(c.pieces[1], c.n) - k0;
   if (c.count == 2) {
@@ -241,7 +240,7 @@ std::array<double, 3> Search::weights(const Candidate& c) const {
 }
 
 /// Newton's method on the candidate's pieces; false if it leads nowhere.
-bool Search::converge(Candidate& candidate) const {
+bool Search::converge(CandidateDirection& candidate) const {
   for (int i = 0; i < kNewtonSteps; ++i) {
     const Vec3 before = candidate.n;
     const bool good = candidate.count == 1   ? step_on_surface(candidate)
@@ -255,7 +254,7 @@ bool Search::converge(Candidate& candidate) const {
 
 /// Takes a piece in that reaches further. Of four, the one is left out without which the ray along n passes best through
 /// the triangle of the others.
-bool Search::include(Candidate& c, const Reach& further) const {
+bool Search::include(CandidateDirection& c, const Reach& further) const {
   if (c.holds(further.pieces)) return false;
   if (c.count < 3) {
     c.add(further.pieces);
@@ -278,12 +277,12 @@ bool Search::include(Candidate& c, const Reach& further) const {
 }
 
 /// The optimum near the candidate: pieces that don't hold it are dropped, those that reach further taken in. Remembered if it is better than the best.
-Search::Ending Search::polish(Candidate candidate) {
+Search::Ending Search::polish(CandidateDirection candidate) {
   for (int pivot = 0; pivot < kPivots && converge(candidate); ++pivot) {
-    const Candidate before = best_;
+    const CandidateDirection before = best_;
     const Reach reached = reach(candidate.n);
     const double t = candidate.n.dot(point(candidate.pieces[0], candidate.n));
-    if (reached.h() > t + kRounding * size_) {
+    if (reached.h() > t + kReachRounding * size_) {
       if (!include(candidate, reached)) break;
       continue;
     }
@@ -309,7 +308,7 @@ Search::Ending Search::polish(Candidate candidate) {
 }
 
 /// Tells a saddle, on which Newton's method may end in a symmetric pose, from a minimum.
-bool Search::is_minimum(const Candidate& c) const {
+bool Search::is_minimum(const CandidateDirection& c) const {
   if (c.count == 3) return true;
   if (c.count == 2) {
     const std::optional<Ridge> ridge = ridge_at(c, c.n);
@@ -360,7 +359,7 @@ void Search::expand() {
     if (!face->outside && lead_ >= -tolerance) return;
     nearest_.reset();
     if (face->outside) nearest_ = *face;
-    Candidate candidate;
+    CandidateDirection candidate;
     for (std::size_t i = 0; i < 3; ++i) {
       if (face->weights[i] > 0.0) candidate.add(hull_.corner(face->corners[i]).pieces);
     }

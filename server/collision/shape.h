@@ -73,5 +73,8 @@ Vec3 support(const Shape& shape, const Vec3& d_S);
 
 /// Distance between the planes normal to n_A (unit, from A to B) that touch A and B at X_AB [m]; > 0: n_A separates.
 double separation_along(const Shape& a, const Shape& b, const Mat3& R_AB, const Vec3& p_AB, const Vec3& n_A);
+/// Its rounding error per length involved: two supports of three products each, a transform and a normalised axis stay
+/// below 16 epsilon.
+inline constexpr double kSeparationRounding = 32.0 * std::numeric_limits<double>::epsilon();
 
 }  // namespace tumble

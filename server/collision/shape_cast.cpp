@@ -14,11 +14,9 @@ namespace {
 
 /// Far more than is ever needed: at a grazing touch, the worst, every step halves the gap.
 constexpr int kSteps = 200;
-/// Rounding of one separation, as multiple of epsilon times the lengths involved (gjk.cpp has the count).
-constexpr double kRounding = 32.0 * std::numeric_limits<double>::epsilon();
 
 double rounding_of(const Shape& a, const Shape& b, const Pose& X_AB) {
-  return kRounding * (bounding_radius(a) + bounding_radius(b) + X_AB.p.norm());
+  return kSeparationRounding * (bounding_radius(a) + bounding_radius(b) + X_AB.p.norm());
 }
 
 /// The plane's distance is linear along the way.

@@ -13,9 +13,11 @@ namespace tumble {
 namespace {
 
 /// A triangle with nothing but its corners, which is what supports ask for; filled anew for one after the other.
-class Facet {
+class SurfaceFacet {
  public:
-  Facet() : hull_(std::make_shared<ConvexHull>()), shape_(HullPointer(hull_)) { hull_->vertices.resize(3); }
+  SurfaceFacet() : hull_(std::make_shared<ConvexHull>()), shape_(HullPointer(hull_)) {
+    hull_->vertices.resize(3);
+  }
 
   const Shape& of(const SurfaceTriangle& triangle) {
     std::copy(triangle.corner.begin(), triangle.corner.end(), hull_->vertices.begin());
@@ -51,7 +53,7 @@ std::optional<ShapeCastHit> cast_on_surface(const Shape& a, const TriangleSurfac
                                             const Vec3& way_A) {
   const Mat3 R_AB = rotation_matrix(X_AB.q);
   const Vec3 way_B = R_AB.transpose() * way_A;
-  Facet facet;
+  SurfaceFacet facet;
   std::optional<ShapeCastHit> first;
   for (const std::uint32_t index : triangles_near(surface, compute_aabb(a, X_AB.inverse()).swept(way_B))) {
     const SurfaceTriangle triangle = surface.triangle(index);
@@ -67,7 +69,7 @@ std::optional<ShapeCastHit> cast_on_surface(const Shape& a, const TriangleSurfac
 }
 
 bool overlaps_surface(const Shape& a, const TriangleSurface& surface, const Pose& X_AB) {
-  Facet facet;
+  SurfaceFacet facet;
   const auto near = triangles_near(surface, compute_aabb(a, X_AB.inverse()));
   return std::any_of(near.begin(), near.end(), [&](std::uint32_t index) {
     return compute_distance(a, facet.of(surface.triangle(index)), X_AB).overlap;
@@ -76,7 +78,7 @@ bool overlaps_surface(const Shape& a, const TriangleSurface& surface, const Pose
 
 Distance compute_distance(const Shape& a, const TriangleSurface& surface, const Pose& X_AB) {
   const Aabb bounds_B = compute_aabb(a, X_AB.inverse());
-  Facet facet;
+  SurfaceFacet facet;
   const auto nearest_within = [&](double reach) {
     Distance nearest;
     nearest.upper = std::numeric_limits<double>::infinity();

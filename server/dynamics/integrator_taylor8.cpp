@@ -25,7 +25,7 @@ constexpr int kMaxSubSteps = 256;
 
 /// Beyond this angle per sub-step [rad] (60000 rad/s at 240 Hz) the series stops converging and the body is turned
 /// about its momentary axis, so that the orientation stays finite; the momentum is exact all the same.
-constexpr double kLargestAngle = 1.0;
+constexpr double kLargestSubTurn = 1.0;
 
 using Coefficients = std::array<double, kOrder + 1>;
 
@@ -128,8 +128,9 @@ Quat turned(const MassProperties& mass, const VelocityPath& path, double h, Quat
     const double wanted = std::min(std::ceil(angle / kAngle), static_cast<double>(left));
     const double parts = std::max(wanted, 1.0);
     const double step = (h - t) / parts;
-    const Quat turn = angle > kLargestAngle * parts ? exp_map(step * w_P)
-                                                    : Turn(mass.inv_I, L_P, q.conjugate() * tau).after(step);
+    const Quat turn = angle > kLargestSubTurn * parts
+                          ? exp_map(step * w_P)
+                          : Turn(mass.inv_I, L_P, q.conjugate() * tau).after(step);
     q = normalized(q * turn);
     t = parts == 1.0 ? h : t + step;
   }

@@ -33,7 +33,7 @@ struct Joined {
   std::uint32_t block = 0;
 };
 
-struct Cone {
+struct ConeConstraint {
   Joined joined;
   Mat36 J[2];               // of the scaled velocity with respect to (v, w) of the two bodies
   Vec3 offset;              // what immovable bodies add to it
@@ -76,7 +76,7 @@ class InteriorPoint {
   Vec3 immovable_velocity(std::uint32_t a, std::uint32_t b, const Vec3& rA, const Vec3& rB) const;
 
   void start();
-  Vec3 velocity(const Cone& cone, const std::vector<Vec6>& v) const;
+  Vec3 velocity(const ConeConstraint& cone, const std::vector<Vec6>& v) const;
   double velocity(const SoftRow& row, const std::vector<Vec6>& v) const;
   void update_defects();
   bool factorize();
@@ -93,7 +93,7 @@ class InteriorPoint {
   BlockCholesky matrix_;
   std::vector<Mat6> mass_;
   std::vector<Vec6> v_, free_, momentum_defect_, dv_;  // by position
-  std::vector<Cone> cones_;
+  std::vector<ConeConstraint> cones_;
   std::vector<SoftRow> soft_rows_;
 };
 
@@ -167,7 +167,7 @@ Vec3 InteriorPoint::immovable_velocity(std::uint32_t a, std::uint32_t b, const V
 }
 
 void InteriorPoint::add_contact(PointContact& c) {
-  Cone& cone = cones_.emplace_back();
+  ConeConstraint& cone = cones_.emplace_back();
   const bool swapped = join(c.a, c.b, cone.joined);
   const bool rubs = c.friction > kFrictionless;
   cone.friction = rubs ? c.friction : 1.0;
@@ -196,7 +196,7 @@ void InteriorPoint::add_row(ScalarRow& row) {
   const Vec6 &J0 = swapped ? JB : JA, &J1 = swapped ? JA : JB;
   const double u = row.n.dot(immovable_velocity(row.a, row.b, row.rA, row.rB));
   if (!row.is_soft() && row.lower == 0.0) {
-    Cone& cone = cones_.emplace_back();
+    ConeConstraint& cone = cones_.emplace_back();
     cone.joined = joined;
     cone.J[0].setZero();
     cone.J[1].setZero();
@@ -220,7 +220,7 @@ void InteriorPoint::add_row(ScalarRow& row) {
   soft.lambda = 0.0;
 }
 
-Vec3 InteriorPoint::velocity(const Cone& cone, const std::vector<Vec6>& v) const {
+Vec3 InteriorPoint::velocity(const ConeConstraint& cone, const std::vector<Vec6>& v) const {
   Vec3 u = cone.J[0] * v[cone.joined.body[0]];
   if (cone.joined.body[1] != kImmovable) u += cone.J[1] * v[cone.joined.body[1]];
   return u;
@@ -233,9 +233,10 @@ double InteriorPoint::velocity(const SoftRow& row, const std::vector<Vec6>& v) c
 
 void InteriorPoint::start() {
   double fastest = 0.0;
-  for (const Cone& cone : cones_) fastest = std::max(fastest, (velocity(cone, v_) + cone.offset).norm());
+  for (const ConeConstraint& cone : cones_)
+    fastest = std::max(fastest, (velocity(cone, v_) + cone.offset).norm());
   const double inside = std::max(1e-3, 0.3 * fastest);  // [m/s]
-  for (Cone& cone : cones_) {
+  for (ConeConstraint& cone : cones_) {
     cone.s = velocity(cone, v_) + cone.offset;
     const double tail = std::sqrt(cone.s.y() * cone.s.y() + cone.s.z() * cone.s.z());
     cone.s.x() = std::max(cone.s.x() - cone.bound, tail + inside);
@@ -246,7 +247,7 @@ void InteriorPoint::start() {
 /// momentum_defect = M (v - v*) - J^T (z, lambda); gap = J v + c - s.
 void InteriorPoint::update_defects() {
   for (std::size_t i = 0; i < v_.size(); ++i) momentum_defect_[i] = mass_[i] * (v_[i] - free_[i]);
-  for (Cone& cone : cones_) {
+  for (ConeConstraint& cone : cones_) {
     cone.gap = velocity(cone, v_) + cone.offset;
     cone.gap.x() += std::sqrt(cone.gap.y() * cone.gap.y() + cone.gap.z() * cone.gap.z()) - cone.bound;
     cone.gap -= cone.s;
@@ -268,7 +269,7 @@ void InteriorPoint::update_defects() {
 bool InteriorPoint::factorize() {
   matrix_.set_zero();
   for (std::uint32_t i = 0; i < mass_.size(); ++i) matrix_.diagonal(i) = mass_[i];
-  for (Cone& cone : cones_) {
+  for (ConeConstraint& cone : cones_) {
     cone.scaling = make_cone_scaling(cone.s, cone.z);
     const Mat36 first = cone.scaling.inverse_square * cone.J[0];
     matrix_.diagonal(cone.joined.body[0]) += cone.J[0].transpose() * first;
@@ -290,7 +291,7 @@ bool InteriorPoint::factorize() {
 /// dv, ds, dz for the `target` of every cone: H dv = -defect + J^T W^-2 (W target - gap), dz = W^-2 (W target - ds).
 void InteriorPoint::find_direction() {
   for (std::size_t i = 0; i < dv_.size(); ++i) dv_[i] = -momentum_defect_[i];
-  for (Cone& cone : cones_) {
+  for (ConeConstraint& cone : cones_) {
     cone.dz = cone.scaling.W * cone.target;
     const Vec3 push = cone.scaling.inverse_square * (cone.dz - cone.gap);
     for (int k = 0; k < 2; ++k) {
@@ -303,7 +304,7 @@ void InteriorPoint::find_direction() {
     }
   }
   matrix_.solve(dv_);
-  for (Cone& cone : cones_) {
+  for (ConeConstraint& cone : cones_) {
     cone.ds = velocity(cone, dv_) + cone.gap;
     cone.dz = cone.scaling.inverse_square * (cone.dz - cone.ds);
   }
@@ -312,7 +313,7 @@ void InteriorPoint::find_direction() {
 
 double InteriorPoint::step_length() const {
   double step = std::numeric_limits<double>::infinity();
-  for (const Cone& cone : cones_)
+  for (const ConeConstraint& cone : cones_)
     step = std::min({step, cone_step(cone.s, cone.ds), cone_step(cone.z, cone.dz)});
   return step;
 }
@@ -320,18 +321,19 @@ double InteriorPoint::step_length() const {
 /// Mehrotra: a step towards the solution itself tells how much centring the second direction of this matrix gets.
 void InteriorPoint::predict_and_correct() {
   double complementarity = 0.0;
-  for (Cone& cone : cones_) {
+  for (ConeConstraint& cone : cones_) {
     complementarity += cone.s.dot(cone.z);
     cone.target = -cone.scaling.l;
   }
   find_direction();
   const double step = std::min(1.0, step_length());
   double predicted = 0.0;
-  for (const Cone& cone : cones_) predicted += (cone.s + step * cone.ds).dot(cone.z + step * cone.dz);
+  for (const ConeConstraint& cone : cones_)
+    predicted += (cone.s + step * cone.ds).dot(cone.z + step * cone.dz);
   const double ratio = predicted / complementarity;
   const double centring = std::clamp(ratio * ratio * ratio, 1e-6, 1.0);
   const double mean = complementarity / static_cast<double>(cones_.size());
-  for (Cone& cone : cones_) {
+  for (ConeConstraint& cone : cones_) {
     const ConeScaling& scaling = cone.scaling;
     const Vec3 second_order =
         cone_product(scaling.inverse_square * (scaling.W * cone.ds), scaling.W * cone.dz);
@@ -343,7 +345,7 @@ void InteriorPoint::predict_and_correct() {
 
 void InteriorPoint::advance(double step) {
   for (std::size_t i = 0; i < v_.size(); ++i) v_[i] += step * dv_[i];
-  for (Cone& cone : cones_) {
+  for (ConeConstraint& cone : cones_) {
     cone.s += step * cone.ds;
     cone.z += step * cone.dz;
   }
@@ -351,7 +353,7 @@ void InteriorPoint::advance(double step) {
 }
 
 void InteriorPoint::store() {
-  for (const Cone& cone : cones_) {
+  for (const ConeConstraint& cone : cones_) {
     if (cone.contact) {
       *cone.contact = Vec3(cone.z.x() / cone.friction, cone.z.y(), cone.z.z());
     } else {

@@ -12,7 +12,7 @@ namespace {
 constexpr double kTurnAngle = 0.05, kSpringAngle = 0.1;  // [rad] a sub-step
 constexpr double kMostSubSteps = 32.0;
 constexpr int kMostRounds = 40;
-constexpr double kConverged = 1e-15, kGoodEnough = 1e-12;  // relative change of the stages in a round
+constexpr double kCollocated = 1e-15, kGoodEnough = 1e-12;  // relative change of the stages in a round
 
 constexpr std::size_t kStages = 3;
 constexpr double kRoot = 3.87298334620741688518;  // sqrt(15)
@@ -94,7 +94,7 @@ class Stepper {
       change = 0.0;
       for (std::size_t stage = 0; stage < kStages; ++stage) change = std::max(change, update_stage(stage, h));
       if (!std::isfinite(change)) return false;
-      if (change <= kConverged || (round > 0 && change <= kGoodEnough && change >= before)) {
+      if (change <= kCollocated || (round > 0 && change <= kGoodEnough && change >= before)) {
         finish(h);
         return true;
       }

@@ -6,7 +6,7 @@
 namespace tumble {
 namespace {
 
-constexpr std::array<Rival<Solver, SolveFunction>, 6> kRivals{{
+constexpr std::array<Rival<Solver, SolveFunction>, 6> kSolvers{{
     {Solver::course_impulse, "course_impulse", &solve_course_impulse},
     {Solver::pgs, "pgs", &solve_pgs},
     {Solver::nncg, "nncg", &solve_nncg},
@@ -18,15 +18,15 @@ constexpr std::array<Rival<Solver, SolveFunction>, 6> kRivals{{
 }  // namespace
 
 SolveFunction solve_function(Solver solver) {
-  return rival(kRivals, solver).function;
+  return rival(kSolvers, solver).function;
 }
 
 const char* solver_name(Solver solver) {
-  return rival(kRivals, solver).name;
+  return rival(kSolvers, solver).name;
 }
 
 std::optional<Solver> solver_from_name(std::string_view name) {
-  return kind_from_name(kRivals, name);
+  return kind_from_name(kSolvers, name);
 }
 
 }  // namespace tumble

@@ -3,6 +3,8 @@
 // one sweep without it, so that the push leaves no speed behind. Directions and arms stay those of the start pose.
 // Restitution is not in here: resolve_impacts comes before. Stored impulses are those of whole steps: the sum over the
 // sub-steps, so v = v* + M^-1 J^T lambda holds as for every solver.
+#include <numbers>
+
 #include "dynamics/force_spring.h"
 #include "dynamics/solver.h"
 #include "dynamics/sweep.h"
@@ -11,7 +13,6 @@
 namespace tumble {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kPushSpeed = 3.0;  // [m/s] as BoundSettings::push_speed by default
 
 /// A damped spring of the contact's own mass, discretised implicitly.
@@ -19,7 +20,7 @@ struct Softness {
   double rate, scale, give;  // [1/s], 1, 1
 
   Softness(double frequency, double damping, double h) {
-    const double omega = 2.0 * kPi * frequency;
+    const double omega = 2.0 * std::numbers::pi * frequency;
     const double a1 = 2.0 * damping + h * omega, a2 = h * omega * a1, a3 = 1.0 / (1.0 + a2);
     rate = omega / a1;
     scale = a2 * a3;

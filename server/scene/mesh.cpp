@@ -20,7 +20,7 @@ namespace tumble {
 namespace {
 
 constexpr std::size_t kStlHeader = 84, kStlTriangle = 50;  // bytes
-constexpr std::string_view kSpace = " \t\r";
+constexpr std::string_view kBlank = " \t\r";
 
 [[noreturn]] void fail(const std::string& name, std::size_t line, const std::string& reason,
                        std::string_view value) {
@@ -29,8 +29,8 @@ constexpr std::string_view kSpace = " \t\r";
 }
 
 std::string_view next_token(std::string_view& line) {
-  const std::size_t begin = std::min(line.find_first_not_of(kSpace), line.size());
-  const std::size_t end = std::min(line.find_first_of(kSpace, begin), line.size());
+  const std::size_t begin = std::min(line.find_first_not_of(kBlank), line.size());
+  const std::size_t end = std::min(line.find_first_of(kBlank, begin), line.size());
   const std::string_view token = line.substr(begin, end - begin);
   line.remove_prefix(end);
   return token;

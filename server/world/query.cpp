@@ -74,13 +74,14 @@ std::optional<GeometryHit> cast_on_geometry(const World& world, std::uint32_t in
 }
 
 /// A shape on its way.
-struct Sweep {
+struct MovedShape {
   const Shape& shape;
   Pose X_WS;
   Vec3 way_W;
 };
 
-std::optional<GeometryHit> cast_on_geometry(const World& world, std::uint32_t index, const Sweep& sweep) {
+std::optional<GeometryHit> cast_on_geometry(const World& world, std::uint32_t index,
+                                            const MovedShape& sweep) {
   const Geometry& geometry = world.geometries()[index];
   const Pose X_WG = world.geometry_pose(geometry);
   const std::optional<ShapeCastHit> hit = cast_shape(
@@ -194,7 +195,7 @@ std::optional<QueryHit> cast_shape(const World& world, const Shape& shape, const
                                    const BodyFilter& filter) {
   check_solid(shape, X_WS);
   check_finite("way", way);
-  return find_first(world, Sweep{shape, X_WS, way}, compute_aabb(shape, X_WS), way, 1.0, filter);
+  return find_first(world, MovedShape{shape, X_WS, way}, compute_aabb(shape, X_WS), way, 1.0, filter);
 }
 
 std::vector<BodyId> find_overlapping(const World& world, const Shape& shape, const Pose& X_WS,

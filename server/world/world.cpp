@@ -17,7 +17,6 @@ void check_range(const char* field, double value, double low, double high) {
 
 /// Speeds above this [m/s, rad/s] are mistakes, not physics; it keeps one step's motion finite in every formula.
 constexpr double kMaxSpeed = 1e6;
-constexpr double kMaxCoordinate = 1e9;  // [m]: a double still resolves 1e-7 m there
 constexpr double kMaxFriction = 1e6;
 constexpr double kMaxForce = 1e15;  // [N, N m]
 

@@ -45,14 +45,6 @@ World pyramid(double time_step, double gap) {
   return world;
 }
 
-double largest_displacement(const World& from, const World& to) {
-  double largest = 0.0;
-  for (std::uint32_t slot = 0; slot < from.body_capacity(); ++slot) {
-    largest = std::max(largest, (to.motion(slot).x - from.motion(slot).x).norm());
-  }
-  return largest;
-}
-
 /// Time until no body is awake, at most `limit` [s].
 double time_to_rest(World& world, double limit) {
   const double h = world.options().time_step;

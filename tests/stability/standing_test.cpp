@@ -13,15 +13,6 @@ World load(const std::string& name) {
   return build_world(read_sdf(std::string(TUMBLE_SCENES_DIR) + "/" + name + ".sdf").scene);
 }
 
-/// Largest way any movable body went [m].
-double largest_displacement(const World& from, const World& to) {
-  double largest = 0.0;
-  for (std::uint32_t slot = 0; slot < from.body_capacity(); ++slot) {
-    largest = std::max(largest, (to.motion(slot).x - from.motion(slot).x).norm());
-  }
-  return largest;
-}
-
 TEST(Standing, AStackOfTenStandsForTenSecondsAndComesToRest) {
   const World start = load("stack");
   World world = start;

@@ -11,7 +11,8 @@
 
 namespace tumble::test {
 
-inline constexpr double kG = 9.81;  // [m/s^2]
+inline constexpr double kG = 9.81;            // [m/s^2]
+inline constexpr double kStep = 1.0 / 240.0;  // [s]
 inline const Vec3 kGravity(0.0, 0.0, -kG);
 
 inline SolverBody fixed_body(const Vec3& x = Vec3::Zero()) {

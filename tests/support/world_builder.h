@@ -48,4 +48,13 @@ inline void run(World& world, int steps) {
   for (int i = 0; i < steps; ++i) world.step();
 }
 
+/// Largest way any body went [m].
+inline double largest_displacement(const World& from, const World& to) {
+  double largest = 0.0;
+  for (std::uint32_t slot = 0; slot < from.body_capacity(); ++slot) {
+    largest = std::max(largest, (to.motion(slot).x - from.motion(slot).x).norm());
+  }
+  return largest;
+}
+
 }  // namespace tumble::test

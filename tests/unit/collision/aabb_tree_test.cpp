@@ -11,8 +11,6 @@
 namespace tumble {
 namespace {
 
-constexpr double kInf = std::numeric_limits<double>::infinity();
-
 Aabb random_box(std::mt19937& random, double world, double size) {
   std::uniform_real_distribution<double> at(-world, world), extent(0.0, size);
   Aabb box;
@@ -57,7 +55,7 @@ TEST(AabbTree, EmptyTreeAnswersNothing) {
   const AabbTree tree;
   EXPECT_EQ(tree.height(), -1);
   EXPECT_EQ(tree.size(), 0u);
-  EXPECT_TRUE(sorted_query(tree, {Vec3::Constant(-kInf), Vec3::Constant(kInf)}).empty());
+  EXPECT_TRUE(sorted_query(tree, {Vec3::Constant(-kInfinity), Vec3::Constant(kInfinity)}).empty());
 }
 
 TEST(AabbTree, BoxesThatOnlyTouchOverlap) {
@@ -96,10 +94,10 @@ TEST(AabbTree, AnswersEqualBruteForceThroughARandomHistory) {
 TEST(AabbTree, InfiniteBoxesAreFoundAndDoNotSpoilTheTree) {
   std::mt19937 random(2);
   CheckedTree checked;
-  checked.insert(0, {Vec3::Constant(-kInf), Vec3(kInf, kInf, 0.0)});  // the ground
-  checked.insert(1, {Vec3::Constant(-kInf), Vec3::Constant(kInf)});   // a tilted half-space
+  checked.insert(0, {Vec3::Constant(-kInfinity), Vec3(kInfinity, kInfinity, 0.0)});  // the ground
+  checked.insert(1, {Vec3::Constant(-kInfinity), Vec3::Constant(kInfinity)});        // a tilted half-space
   for (std::uint32_t user = 2; user < 1002; ++user) checked.insert(user, random_box(random, 50.0, 1.0));
-  checked.insert(1002, {Vec3(5.0, -kInf, -kInf), Vec3::Constant(kInf)});  // a wall
+  checked.insert(1002, {Vec3(5.0, -kInfinity, -kInfinity), Vec3::Constant(kInfinity)});  // a wall
   for (int i = 0; i < 500; ++i) {
     const Aabb bounds = random_box(random, 50.0, 4.0);
     ASSERT_EQ(sorted_query(checked.tree, bounds), checked.overlapping(bounds));

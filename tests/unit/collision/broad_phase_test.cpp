@@ -11,7 +11,6 @@
 namespace tumble {
 namespace {
 
-constexpr double kInf = std::numeric_limits<double>::infinity();
 constexpr double kMargin = 0.05;
 
 /// Unit boxes flying through a cage and bouncing off its walls; every `fixed_every`-th one does not move.
@@ -169,7 +168,7 @@ TEST(BroadPhase, AFixedGeometryThatIsPutElsewhereMeetsWhatRestsThere) {
 
 TEST(BroadPhase, HalfSpacesWithInfiniteBoxesPairAndStay) {
   Crowd crowd(60, 0.1, 5);
-  const Aabb ground{Vec3::Constant(-kInf), Vec3(kInf, kInf, -1.0)};
+  const Aabb ground{Vec3::Constant(-kInfinity), Vec3(kInfinity, kInfinity, -1.0)};
   crowd.phase.add(60, ground, kMargin, false);
   std::set<std::uint32_t> touching;
   for (int step = 0; step < 100; ++step) {

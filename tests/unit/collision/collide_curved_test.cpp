@@ -5,20 +5,14 @@
 #include <gtest/gtest.h>
 
 #include "collision/distance.h"
-#include "collision/narrow_phase.h"
 #include "curved_reference.h"
+#include "first_query.h"
 #include "sample_shapes.h"
 
 namespace tumble::test {
 namespace {
 
 constexpr double kQuarter = 1.5707963267948966;
-
-Manifold query(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB, double margin) {
-  PairCache cache;
-  NarrowPhaseCounters counters;
-  return collide(a, X_WA, b, X_WB, margin, {}, cache, counters);
-}
 
 enum class Overlap { shallow, deep, apart };
 

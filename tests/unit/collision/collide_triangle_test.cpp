@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "collision/collide_triangle_hull.h"
-#include "collision/narrow_phase.h"
+#include "first_query.h"
 #include "math/rotation.h"
 #include "sample_hulls.h"
 #include "support/surface_meshes.h"
@@ -16,13 +16,6 @@ struct Touch {
   double separation;
 };
 
-Manifold query(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB, double margin,
-               std::uint32_t part = 0) {
-  PairCache cache;
-  NarrowPhaseCounters counters;
-  return collide(a, X_WA, b, X_WB, margin, {}, cache, counters, part);
-}
-
 void append(const Manifold& manifold, const Pose& X_WA, std::vector<Touch>& touches) {
   for (int i = 0; i < manifold.count; ++i) {
     const ManifoldPoint& point = manifold.points[static_cast<std::size_t>(i)];
@@ -34,7 +27,7 @@ void append(const Manifold& manifold, const Pose& X_WA, std::vector<Touch>& touc
 std::vector<Touch> touches_with(const Shape& body, const Pose& X_WA, const Shape& surface, double margin) {
   std::vector<Touch> touches;
   for (std::uint32_t part = 0; part < surface_of(surface)->triangle_count(); ++part) {
-    append(query(body, X_WA, surface, Pose{}, margin, part), X_WA, touches);
+    append(query(body, X_WA, surface, Pose{}, margin, {}, part), X_WA, touches);
   }
   return touches;
 }
@@ -164,8 +157,8 @@ TEST(CollideTriangle, ASwappedQueryIsTheSameContactTurnedRound) {
     for (int i = 0; i < 400; ++i) {
       const Pose X_WA = random.pose(1.0), X_WB = random.pose(0.1);
       const auto part = static_cast<std::uint32_t>(i) % mesh->triangle_count();
-      const Manifold ab = query(body.shape, X_WA, mesh, X_WB, 0.3, part);
-      Manifold ba = query(mesh, X_WB, body.shape, X_WA, 0.3, part);
+      const Manifold ab = query(body.shape, X_WA, mesh, X_WB, 0.3, {}, part);
+      Manifold ba = query(mesh, X_WB, body.shape, X_WA, 0.3, {}, part);
       ASSERT_EQ(ab.count, ba.count);
       if (ab.count == 0) continue;
       ++contacts;

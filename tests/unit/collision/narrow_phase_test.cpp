@@ -3,18 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include "first_query.h"
 #include "math/rotation.h"
 #include "sample_hulls.h"
 
 namespace tumble::test {
 namespace {
-
-Manifold query(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB, double margin,
-               const NarrowPhaseOptions& options = {}) {
-  PairCache cache;
-  NarrowPhaseCounters counters;
-  return collide(a, X_WA, b, X_WB, margin, options, cache, counters);
-}
 
 std::vector<Shape> one_of_each() {
   RandomPose random(11);

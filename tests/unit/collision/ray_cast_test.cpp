@@ -10,8 +10,6 @@
 namespace tumble::test {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
 TEST(RayCast, MeetsWhatAMovedPointMeets) {
   RandomPose random(11);
   int hits = 0, misses = 0, disagree = 0;

@@ -10,8 +10,6 @@
 namespace tumble::test {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
 std::vector<Shape> solids() {
   RandomPose random(71);
   return {Sphere{0.4},

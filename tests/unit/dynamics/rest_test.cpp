@@ -8,7 +8,7 @@
 namespace tumble {
 namespace {
 
-constexpr RestSettings kSettings;
+constexpr RestSettings kRestSettings;
 
 ContactProblem island(double speed) {
   ContactProblem problem;
@@ -30,7 +30,7 @@ ContactProblem island(double speed) {
 
 bool rests_at_once(double speed, double residual) {
   double calm_for = 0.0;
-  return check_rest(island(speed), residual, kSettings, calm_for);
+  return check_rest(island(speed), residual, kRestSettings, calm_for);
 }
 
 TEST(Rest, SpeedIsTheLargestOfTheMovableBodies) {
@@ -38,10 +38,10 @@ TEST(Rest, SpeedIsTheLargestOfTheMovableBodies) {
 }
 
 TEST(Rest, IsCertifiedByResidualAndSpeedTogether) {
-  const double limit = std::min(kSettings.speed, kSettings.acceleration / 64);
-  EXPECT_TRUE(rests_at_once(0.99 * limit, 0.99 * kSettings.residual));
+  const double limit = std::min(kRestSettings.speed, kRestSettings.acceleration / 64);
+  EXPECT_TRUE(rests_at_once(0.99 * limit, 0.99 * kRestSettings.residual));
   EXPECT_FALSE(rests_at_once(1.01 * limit, 0.0));
-  EXPECT_FALSE(rests_at_once(0.0, 1.01 * kSettings.residual));
+  EXPECT_FALSE(rests_at_once(0.0, 1.01 * kRestSettings.residual));
   EXPECT_FALSE(rests_at_once(0.0, std::nan("")));
 }
 
@@ -49,9 +49,9 @@ TEST(Rest, ANonFiniteBodyIsNotCalmed) {
   for (const double bad : {std::nan(""), HUGE_VAL}) {
     ContactProblem problem = island(0.0);
     problem.bodies[1].w.y() = bad;
-    double calm_for = kSettings.calm_time;
-    EXPECT_FALSE(check_rest(problem, 0.0, kSettings, calm_for));
-    EXPECT_FALSE(check_rest(problem, std::nan(""), kSettings, calm_for));
+    double calm_for = kRestSettings.calm_time;
+    EXPECT_FALSE(check_rest(problem, 0.0, kRestSettings, calm_for));
+    EXPECT_FALSE(check_rest(problem, std::nan(""), kRestSettings, calm_for));
   }
 }
 
@@ -59,7 +59,7 @@ TEST(Rest, ATurningPointIsNotRest) {
   ContactProblem problem = island(0.0);
   problem.bodies[1].v0 = Vec3(0.0, 0.0, -0.01);
   double calm_for = 0.0;
-  EXPECT_FALSE(check_rest(problem, 0.0, kSettings, calm_for));
+  EXPECT_FALSE(check_rest(problem, 0.0, kRestSettings, calm_for));
 }
 
 TEST(Rest, AShortStepDoesNotHideAnAcceleration) {
@@ -67,22 +67,22 @@ TEST(Rest, AShortStepDoesNotHideAnAcceleration) {
   ContactProblem problem = island(7e-8);
   problem.h = 1e-3;  // limit 6e-8 m/s
   double calm_for = 0.0;
-  EXPECT_FALSE(check_rest(problem, 0.0, kSettings, calm_for));
+  EXPECT_FALSE(check_rest(problem, 0.0, kRestSettings, calm_for));
 }
 
 TEST(Rest, ComesAfterACalmTimeAndAnyHasteStartsItAnew) {
   double calm_for = 0.0;
-  const double slow = 0.9 * kSettings.calm_speed;
-  for (int i = 1; i < 32; ++i) EXPECT_FALSE(check_rest(island(slow), 1.0, kSettings, calm_for)) << i;
-  EXPECT_FALSE(check_rest(island(2.0 * kSettings.calm_speed), 1.0, kSettings, calm_for));
+  const double slow = 0.9 * kRestSettings.calm_speed;
+  for (int i = 1; i < 32; ++i) EXPECT_FALSE(check_rest(island(slow), 1.0, kRestSettings, calm_for)) << i;
+  EXPECT_FALSE(check_rest(island(2.0 * kRestSettings.calm_speed), 1.0, kRestSettings, calm_for));
   EXPECT_EQ(calm_for, 0.0);
-  for (int i = 1; i < 32; ++i) EXPECT_FALSE(check_rest(island(slow), 1.0, kSettings, calm_for)) << i;
-  EXPECT_TRUE(check_rest(island(slow), 1.0, kSettings, calm_for));  // 32/64 s = calm_time
+  for (int i = 1; i < 32; ++i) EXPECT_FALSE(check_rest(island(slow), 1.0, kRestSettings, calm_for)) << i;
+  EXPECT_TRUE(check_rest(island(slow), 1.0, kRestSettings, calm_for));  // 32/64 s = calm_time
 }
 
 TEST(Rest, SlowMotionThatIsSolvedExactlyIsNeverCalmedAway) {
   double calm_for = 100.0;
-  EXPECT_FALSE(check_rest(island(1e-4), 1e-9, kSettings, calm_for));
+  EXPECT_FALSE(check_rest(island(1e-4), 1e-9, kRestSettings, calm_for));
   EXPECT_EQ(calm_for, 0.0);
 }
 
@@ -90,9 +90,9 @@ TEST(Rest, NothingHoldsABodyWithoutContact) {
   ContactProblem problem = island(0.0);
   problem.contacts.clear();
   double calm_for = 100.0;
-  EXPECT_FALSE(check_rest(problem, 0.0, kSettings, calm_for));
+  EXPECT_FALSE(check_rest(problem, 0.0, kRestSettings, calm_for));
   problem.rows.resize(1);
-  EXPECT_TRUE(check_rest(problem, 0.0, kSettings, calm_for));
+  EXPECT_TRUE(check_rest(problem, 0.0, kRestSettings, calm_for));
 }
 
 }  // namespace

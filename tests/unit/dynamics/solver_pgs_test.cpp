@@ -11,7 +11,6 @@ namespace {
 
 using namespace test;
 
-constexpr double kStep = 1.0 / 240.0;
 const BoundSettings kSlop{.slop = 1e-3, .push_fraction = 0.2, .push_speed = 3.0};
 
 class EverySolver : public testing::TestWithParam<const char*> {

@@ -8,8 +8,6 @@ namespace {
 
 using namespace test;
 
-constexpr double kStep = 1.0 / 240.0;
-
 double deepest(const ContactProblem& problem) {
   double depth = 0.0;
   for (const PointContact& c : problem.contacts) depth = std::max(depth, -c.separation);

@@ -39,7 +39,7 @@ std::vector<Vec3> points_of_stl(std::string_view bytes, const std::string& name)
 }
 
 template <class Read>
-std::string error_of(Read&& read) {
+std::string mesh_error(Read&& read) {
   try {
     read();
   } catch (const MeshError& error) {
@@ -63,24 +63,25 @@ TEST(Mesh, StlOfBothKindsGivesEachPointOnce) {
 }
 
 TEST(Mesh, ErrorsNameFileLineAndValue) {
-  EXPECT_EQ(error_of([] { points_of_obj("v 0 0 0\nv 1 x 0\n", "m.obj"); }),
+  EXPECT_EQ(mesh_error([] { points_of_obj("v 0 0 0\nv 1 x 0\n", "m.obj"); }),
             "m.obj:2: a vertex needs three numbers ( 1 x 0)");
-  EXPECT_EQ(error_of([] { points_of_obj("v 1 2", "m.obj"); }),
+  EXPECT_EQ(mesh_error([] { points_of_obj("v 1 2", "m.obj"); }),
             "m.obj:1: a vertex needs three numbers ( 1 2)");
-  EXPECT_EQ(error_of([] { points_of_obj("v 1 2 nan", "m.obj"); }), "m.obj:1: a vertex must be finite (nan)");
-  EXPECT_EQ(error_of([] { points_of_stl("solid a\n\nvertex 1 2 1e400\n", "m.stl"); }),
+  EXPECT_EQ(mesh_error([] { points_of_obj("v 1 2 nan", "m.obj"); }),
+            "m.obj:1: a vertex must be finite (nan)");
+  EXPECT_EQ(mesh_error([] { points_of_stl("solid a\n\nvertex 1 2 1e400\n", "m.stl"); }),
             "m.stl:3: a vertex needs three numbers ( 1 2 1e400)");
-  EXPECT_EQ(error_of([] {
+  EXPECT_EQ(mesh_error([] {
               points_of_stl(binary_stl({kCorner[0], kCorner[1], kCorner[2]}, 2), "m.stl");
             }),
             "m.stl: neither ASCII nor binary STL (134 bytes, header says 2 triangles)");
-  EXPECT_EQ(error_of([] { points_of_stl("\x7f" + std::string(99, 'x'), "m.stl"); }),
+  EXPECT_EQ(mesh_error([] { points_of_stl("\x7f" + std::string(99, 'x'), "m.stl"); }),
             "m.stl: neither ASCII nor binary STL (100 bytes, header says 2021161080 triangles)");
   const std::vector<Vec3> infinite = {kCorner[0], kCorner[1],
                                       Vec3(0, 0, std::numeric_limits<double>::infinity())};
-  EXPECT_EQ(error_of([&] { points_of_stl(binary_stl(infinite, 1), "m.stl"); }),
+  EXPECT_EQ(mesh_error([&] { points_of_stl(binary_stl(infinite, 1), "m.stl"); }),
             "m.stl: a vertex must be finite (triangle 0)");
-  EXPECT_EQ(error_of([] { points_of_file("none.stl"); }), "none.stl: cannot be read");
+  EXPECT_EQ(mesh_error([] { points_of_file("none.stl"); }), "none.stl: cannot be read");
 }
 
 TEST(Mesh, PathsAreRelativeToTheScene) {

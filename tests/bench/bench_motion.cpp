@@ -1,0 +1,147 @@
+// What free motion costs: making and reading a flight, a step of each integrator, and whole steps of free bodies beside
+// Bullet's and ODE's, all in double precision.
+#include <benchmark/benchmark.h>
+
+#include <string>
+
+#include "dynamics/flight.h"
+#include "dynamics/integrator.h"
+#include "free_body_peers.h"
+#include "support/rotation_cases.h"
+#include "world/world.h"
+
+namespace tumble {
+namespace {
+
+constexpr double kStep = 1.0 / 240.0;
+constexpr int kBodies = 256;
+
+struct Kind {
+  const char* name;
+  Vec3 I, w;
+};
+const Kind kKinds[] = {{"sphere", Vec3(2, 2, 2), Vec3(6, -2, 4)},
+                       {"symmetric", Vec3(1, 1, 2), Vec3(6, -2, 4)},
+                       {"triaxial_circular", Vec3(0.6, 0.8, 1.0), Vec3(3.0, 0.5, -0.9)},
+                       {"triaxial_hyperbolic", Vec3(0.5, 0.75, 1.2), Vec3(6, -2, 4)}};
+
+Motion start_of(const Kind& kind) {
+  Motion start;
+  start.w = kind.w;
+  start.L = kind.I.cwiseProduct(kind.w);
+  return start;
+}
+
+void make_flight(benchmark::State& state, const Kind& kind) {
+  const MassProperties mass = principal_body(kind.I);
+  Motion start = start_of(kind);
+  for (auto run : state) {
+    benchmark::DoNotOptimize(start);
+    Flight flight(mass, start, Vec3(0, 0, -9.81));
+    benchmark::DoNotOptimize(flight);
+  }
+}
+
+void read_flight(benchmark::State& state, const Kind& kind) {
+  const Flight flight(principal_body(kind.I), start_of(kind), Vec3(0, 0, -9.81));
+  double t = 0.0;
+  for (auto run : state) benchmark::DoNotOptimize(flight.at(t += kStep));
+}
+
+void read_position(benchmark::State& state) {
+  const Flight flight(principal_body(kKinds[2].I), start_of(kKinds[2]), Vec3(0, 0, -9.81));
+  double t = 0.0;
+  for (auto run : state) benchmark::DoNotOptimize(flight.position(t += kStep));
+}
+
+void integrate(benchmark::State& state, Integrator integrator, bool torque) {
+  const IntegrateFunction step = integrate_function(integrator);
+  const MassProperties mass = principal_body(kKinds[2].I);
+  Motion body = start_of(kKinds[2]);
+  const Vec3 change = torque ? Vec3(1e-3, -1e-3, 1e-3) : Vec3(Vec3::Zero());
+  for (auto run : state) {
+    step(mass, {.v0 = body.v, .v1 = body.v, .L0 = body.L, .L1 = body.L + change}, kStep, body);
+    benchmark::DoNotOptimize(body);
+    if (torque) body.L = start_of(kKinds[2]).L;
+  }
+}
+
+void per_body(benchmark::State& state, int bodies) {
+  state.counters["ns_per_body"] = benchmark::Counter(
+      1e-9 * bodies, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+}
+
+World free_bodies(int count, Integrator integrator = Integrator::closed_form) {
+  Options options;
+  options.integrator = integrator;
+  World world(options);
+  for (int i = 0; i < count; ++i) {
+    BodyDefinition body;
+    body.name = "body" + std::to_string(i);
+    body.X_WL.p = Vec3(10.0 * (i % 100), 10.0 * (i / 100), 0.0);
+    body.v_WB = Vec3(0, 0, 20);
+    body.w_WB = kKinds[2].w;
+    body.inertia = Inertia{1.0, Vec3::Zero(), kKinds[2].I.asDiagonal()};
+    GeometryDefinition geometry;
+    geometry.shape = Sphere{0.1};
+    body.geometries = {geometry};
+    world.create_body(body);
+  }
+  return world;
+}
+
+/// Once every body is aloft: the first second of it.
+void step_world(benchmark::State& state, int count, bool read, Integrator integrator) {
+  World world = free_bodies(count, integrator);
+  for (int i = 0; i < 240; ++i) world.step();
+  double sum = 0.0;
+  for (auto run : state) {
+    world.step();
+    for (int i = 0; read && i < count; ++i) sum += world.motion(static_cast<std::uint32_t>(i)).w.x();
+  }
+  benchmark::DoNotOptimize(sum);
+  if (count > 0) per_body(state, count);
+}
+
+void step_peer(benchmark::State& state, bool bullet) {
+  const auto make = bullet ? bench::make_bullet : bench::make_ode;
+  const auto peer = make(kBodies, kKinds[2].I, kKinds[2].w, Vec3::Zero(), Vec3::Zero());
+  for (auto run : state) peer->step(kStep);
+  per_body(state, kBodies);
+}
+
+void add_measurements() {
+  const auto add = [](const std::string& name, auto function) {
+    return benchmark::RegisterBenchmark(name.c_str(), function);
+  };
+  for (const Kind& kind : kKinds) {
+    add(std::string("make_flight/") + kind.name, [&kind](benchmark::State& s) { make_flight(s, kind); });
+    add(std::string("read_flight/") + kind.name, [&kind](benchmark::State& s) { read_flight(s, kind); });
+  }
+  add("read_position", read_position);
+  for (int i = 0; i <= static_cast<int>(Integrator::closed_form); ++i) {
+    const auto integrator = static_cast<Integrator>(i);
+    add(std::string("step/") + integrator_name(integrator),
+        [=](benchmark::State& s) { integrate(s, integrator, false); });
+  }
+  add("step/taylor8_under_torque", [](benchmark::State& s) { integrate(s, Integrator::taylor8, true); });
+  add("world/256_read", [](benchmark::State& s) { step_world(s, kBodies, true, Integrator::closed_form); });
+  add("world/256_semi_implicit_euler",
+      [](benchmark::State& s) { step_world(s, kBodies, true, Integrator::semi_implicit_euler); });
+  add("world/256_bullet", [](benchmark::State& s) { step_peer(s, true); });
+  add("world/256_ode", [](benchmark::State& s) { step_peer(s, false); });
+  add("world/empty", [](benchmark::State& s) { step_world(s, 0, false, Integrator::closed_form); });
+  add("world/10000_unread",
+      [](benchmark::State& s) { step_world(s, 10000, false, Integrator::closed_form); });
+}
+
+}  // namespace
+}  // namespace tumble
+
+int main(int argc, char** argv) {
+  tumble::add_measurements();
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
+  benchmark::RunSpecifiedBenchmarks();
+  benchmark::Shutdown();
+}

@@ -22,9 +22,17 @@ inline constexpr std::string_view kContactsSuffix = "_CONTACTS";  ///< contacts_
 inline constexpr std::string_view kCatalogSuffix = "_CATALOG";    ///< catalog_t
 inline constexpr std::string_view kHeartbeatSuffix = "_HEARTBEAT";  ///< heartbeat_t
 inline constexpr std::string_view kAckSuffix = "_ACK";              ///< ack_t
+inline constexpr std::string_view kPackedSuffix = "_PACKED";        ///< packed_t, instead of state_t
+inline constexpr std::string_view kPushesSuffix = "_PUSHES";        ///< pushes_t
+inline constexpr std::string_view kHitsSuffix = "_HITS";            ///< hits_t
 // Clients to server:
 inline constexpr std::string_view kForceSuffix = "_FORCE";      ///< force_command_t
 inline constexpr std::string_view kControlSuffix = "_CONTROL";  ///< control_t
+inline constexpr std::string_view kQuerySuffix = "_QUERY";      ///< query_t
+
+// In logs only:
+inline constexpr std::string_view kRecordingSuffix = "_RECORDING";  ///< recording_t
+inline constexpr std::string_view kStepSuffix = "_STEP";            ///< step_record_t
 
 inline std::string channel_name(std::string_view world, std::string_view suffix) {
   return std::string(world).append(suffix);
@@ -67,6 +75,8 @@ inline constexpr std::int64_t kMaxStepCount = 1'000'000'000;
 inline constexpr std::size_t kMaxBodyName = 63;    ///< bytes
 inline constexpr std::size_t kMaxAckDetail = 120;  ///< bytes
 inline constexpr std::size_t kMaxWatched = 32;     ///< bodies on channels of their own
+inline constexpr std::size_t kMaxSnapshots = 16;   ///< worlds kept by name
+inline constexpr std::size_t kPackedRecord = 25;   ///< bytes of a body in packed_t
 /// A client's sequence may lag this far behind its highest one; older ones can no longer be told from repetitions.
 inline constexpr std::int64_t kSequenceWindow = 1024;
 
@@ -74,7 +84,7 @@ inline constexpr std::int64_t kSequenceWindow = 1024;
 inline constexpr double kDefaultPublishRate = 60.0;
 inline constexpr double kStatsRate = 10.0;
 inline constexpr double kHeartbeatRate = 2.0;
-inline constexpr double kContactsRate = 20.0;  ///< at most
+inline constexpr double kContactsRate = 20.0;  ///< at most; of pushes, too
 inline constexpr double kRefreshPeriod = 0.5;  ///< [s] in which every body is sent once, changed or not
 inline constexpr double kCatalogPeriod = 1.0;  ///< [s] in which the whole catalogue is sent once
 

@@ -61,6 +61,14 @@ Malformed decode(Bytes bytes, control_t& message) {
   return reason == Malformed::none ? decode_checked(bytes, message) : reason;
 }
 
+Malformed decode(Bytes bytes, query_t& message) {
+  if (const Malformed reason = check_start<query_t>(bytes, kMaxCommandBytes); reason != Malformed::none) {
+    return reason;
+  }
+  const Malformed reason = Walker(bytes).fixed(static_cast<std::size_t>(message.getEncodedSize())).end();
+  return reason == Malformed::none ? decode_checked(bytes, message) : reason;
+}
+
 Malformed decode(Bytes bytes, heartbeat_t& message) {
   if (const Malformed reason = check_start<heartbeat_t>(bytes, kMaxCommandBytes); reason != Malformed::none)
     return reason;
@@ -90,6 +98,11 @@ Sender read_sender(Bytes bytes) {
 bool all_finite(const force_command_t& command) {
   return finite(command.force) && finite(command.torque) && finite(command.point) &&
          std::isfinite(command.duration);
+}
+
+bool all_finite(const query_t& query) {
+  return finite(query.origin) && finite(query.direction) && finite(query.size) && finite(query.orientation) &&
+         std::isfinite(query.length);
 }
 
 bool all_finite(const control_t& command) {

@@ -15,8 +15,14 @@
 #include "tumble/control_t.hpp"
 #include "tumble/force_command_t.hpp"
 #include "tumble/heartbeat_t.hpp"
+#include "tumble/hits_t.hpp"
+#include "tumble/packed_t.hpp"
+#include "tumble/pushes_t.hpp"
+#include "tumble/query_t.hpp"
+#include "tumble/recording_t.hpp"
 #include "tumble/state_t.hpp"
 #include "tumble/stats_t.hpp"
+#include "tumble/step_record_t.hpp"
 
 namespace tumble {
 
@@ -49,6 +55,12 @@ Malformed decode(Bytes bytes, body_state_t& message);
 Malformed decode(Bytes bytes, catalog_t& message);
 Malformed decode(Bytes bytes, contacts_t& message);
 Malformed decode(Bytes bytes, ack_t& message);
+Malformed decode(Bytes bytes, packed_t& message);
+Malformed decode(Bytes bytes, pushes_t& message);
+Malformed decode(Bytes bytes, query_t& message);
+Malformed decode(Bytes bytes, hits_t& message);
+Malformed decode(Bytes bytes, recording_t& message);
+Malformed decode(Bytes bytes, step_record_t& message);
 
 /// The sender of a force_command_t or control_t that `decode` refused; {0, 0} if the bytes don't name one.
 Sender read_sender(Bytes bytes);
@@ -56,6 +68,7 @@ Sender read_sender(Bytes bytes);
 /// True if every floating-point number of the command is finite.
 bool all_finite(const force_command_t& command);
 bool all_finite(const control_t& command);
+bool all_finite(const query_t& query);
 
 /// The message as bytes, fingerprint first; `bytes` keeps its capacity.
 template <typename Message>

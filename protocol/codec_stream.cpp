@@ -64,4 +64,35 @@ Malformed decode(Bytes bytes, ack_t& message) {
   return walker.end() == Malformed::none ? decode_checked(bytes, message) : walker.end();
 }
 
+Malformed decode(Bytes bytes, hits_t& message) {
+  if (const Malformed reason = check_start<hits_t>(bytes, kMaxStreamBytes); reason != Malformed::none)
+    return reason;
+  std::size_t n = 0;
+  Walker walker(bytes);
+  walker.fixed(kFingerprint + 6 * 8 + 1).text(kMaxAckDetail).fixed(4).count(n).fixed(n * (3 * 4 + 7 * 8 + 1));
+  return walker.end() == Malformed::none ? decode_checked(bytes, message) : walker.end();
+}
+
+Malformed decode(Bytes bytes, pushes_t& message) {
+  if (const Malformed reason = check_start<pushes_t>(bytes, kMaxStreamBytes); reason != Malformed::none)
+    return reason;
+  std::size_t n = 0;
+  Walker walker(bytes);
+  walker.fixed(kFingerprint + 4 * 8 + 4).count(n).fixed(n * (4 + 10 * 8));
+  return walker.end() == Malformed::none ? decode_checked(bytes, message) : walker.end();
+}
+
+Malformed decode(Bytes bytes, packed_t& message) {
+  if (const Malformed reason = check_start<packed_t>(bytes, kMaxStreamBytes); reason != Malformed::none)
+    return reason;
+  std::size_t size = 0;
+  Walker walker(bytes);
+  walker.fixed(kFingerprint + 6 * 8 + 4 + 2 * 2 + 4 * 8 + 4);
+  const std::size_t count_at = kFingerprint + 6 * 8 + 4 + 2 * 2 + 4 * 8 + 4;
+  walker.fixed(4).count(size).fixed(size);
+  if (walker.end() != Malformed::none) return walker.end();
+  if (std::size_t{read_u32(bytes, count_at)} * kPackedRecord != size) return Malformed::too_short;
+  return decode_checked(bytes, message);
+}
+
 }  // namespace tumble

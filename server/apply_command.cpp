@@ -5,18 +5,11 @@
 
 #include <stdexcept>
 
+#include "from_message.h"
 #include "tumble/catalog_t.hpp"
 
 namespace tumble {
 namespace {
-
-Vec3 to_vector(const double (&values)[3]) {
-  return {values[0], values[1], values[2]};
-}
-
-Quat to_quaternion(const double (&q)[4]) {
-  return normalized(Quat(q[0], q[1], q[2], q[3]));
-}
 
 BodyId to_id(const Outcome& found) {
   return {static_cast<std::uint32_t>(found.body), static_cast<std::uint32_t>(found.generation)};
@@ -39,25 +32,6 @@ Outcome change_body(World& world, const Message& command, Change&& change) {
   return outcome;
 }
 
-Shape make_shape(const control_t& c) {
-  switch (c.shape_type) {
-    case catalog_t::SHAPE_HALF_SPACE:
-      return HalfSpace{};
-    case catalog_t::SHAPE_SPHERE:
-      return Sphere{c.size[0]};
-    case catalog_t::SHAPE_CAPSULE:
-      return Capsule{c.size[0], 0.5 * c.size[1]};
-    case catalog_t::SHAPE_CYLINDER:
-      return Cylinder{c.size[0], 0.5 * c.size[1]};
-    case catalog_t::SHAPE_CONE:
-      return Cone{c.size[0], 0.5 * c.size[1]};
-    case catalog_t::SHAPE_ELLIPSOID:
-      return Ellipsoid{to_vector(c.size)};
-    default:
-      return Box{0.5 * to_vector(c.size)};
-  }
-}
-
 BodyType make_type(std::int8_t code) {
   if (code == catalog_t::TYPE_DYNAMIC) return BodyType::dynamic;
   return code == catalog_t::TYPE_KINEMATIC ? BodyType::kinematic : BodyType::fixed;
@@ -66,7 +40,7 @@ BodyType make_type(std::int8_t code) {
 BodyDefinition make_body(const control_t& c) {
   GeometryDefinition geometry;
   geometry.name = "shape";
-  geometry.shape = make_shape(c);
+  geometry.shape = make_shape(c.shape_type, c.size);
   geometry.material.friction = c.friction;
   geometry.material.restitution = c.restitution;
   for (std::size_t i = 0; i < geometry.color.size(); ++i) geometry.color[i] = c.color[i];

@@ -13,6 +13,7 @@ namespace tumble {
 namespace {
 
 constexpr int kBadArguments = 2;
+constexpr double kRecordInterval = 0.1;  // [s]
 
 std::string join_demo_names() {
   std::string names;
@@ -63,8 +64,30 @@ CLI::Validator demo_name() {
 }
 
 struct Names {
-  std::string accuracy, integrator, solver, summary = "text";
+  std::string accuracy, integrator, solver, encoding = "exact", summary = "text";
 };
+
+void add_log_options(CLI::App& app, Arguments& a) {
+  auto* record =
+      app.add_option("--record", a.record, "Write the run to a new LCM log, from which it can be repeated");
+  a.record_interval = kRecordInterval;
+  app.add_option("--record-interval", a.record_interval,
+                 "Simulated seconds between two pictures of the world in the log (default 0.1)")
+      ->check(number_within(1e-6, 1e6))
+      ->needs(record);
+  const std::string logged = "its scene and options are the log's";
+  auto* replay =
+      app.add_option("--replay", a.replay, "Repeat a recorded run, compare every step, and end; " + logged);
+  auto* resume = app.add_option("--resume", a.resume,
+                                "Go on with a recorded run after its last complete step; " + logged);
+  replay->check(CLI::ExistingFile)->excludes(record);
+  resume->check(CLI::ExistingFile)->excludes(record)->excludes(replay);
+  for (const char* name :
+       {"scene", "--demo", "--accuracy", "--integrator", "--solver", "--dt", "--print-scene"}) {
+    replay->excludes(app.get_option(name));
+    resume->excludes(app.get_option(name));
+  }
+}
 
 void add_options(CLI::App& app, Arguments& a, Names& names) {
   auto* scene = app.add_option("scene", a.scene, "Scene to serve, an SDF file (default: the demo pyramid)");
@@ -81,7 +104,9 @@ void add_options(CLI::App& app, Arguments& a, Names& names) {
   a.publish_rate = kDefaultPublishRate;
   app.add_option("--publish-rate", a.publish_rate, "Publications of the state per second (default 60)")
       ->check(number_within(0.1, 1000.0));
-  a.world_name = kDefaultWorld;
+  app.add_option("--encoding", names.encoding,
+                 "Of the state: exact (doubles, 113 bytes a body) or packed (25 bytes a body, for thousands)")
+      ->check(CLI::IsMember({"exact", "packed"}));
   app.add_option("--world", a.world_name, "Prefix of the channels (default TUMBLE)")->check(world_name());
   app.add_option("--lcm-url", a.lcm_url,
                  "Bus (default: LCM_DEFAULT_URL, else udpm://239.255.76.67:7667?ttl=0)");
@@ -97,6 +122,10 @@ void add_options(CLI::App& app, Arguments& a, Names& names) {
       ->check(CLI::IsMember({"text", "json"}));
   app.add_flag("--print-scene", a.print_scene, "Write the scene with all defaults as SDF to stdout and end");
   app.add_flag("--list-demos", a.list_demos, "List the built-in scenes and end");
+  app.add_flag(
+      "--health", a.health,
+      "Listen for a server of this world on this machine: exit status 0 if it is heard within 2 s, else 1");
+  add_log_options(app, a);
   app.set_version_flag("--version", std::string("tumble-server ") + kVersion);
 }
 
@@ -117,6 +146,7 @@ ParsedArguments parse_arguments(int argc, const char* const* argv) {
   if (!names.accuracy.empty()) arguments.accuracy = accuracy_from_name(names.accuracy);
   if (!names.integrator.empty()) arguments.integrator = integrator_from_name(names.integrator);
   if (!names.solver.empty()) arguments.solver = solver_from_name(names.solver);
+  arguments.packed = names.encoding == "packed";
   arguments.json = names.summary == "json";
   return {arguments, 0};
 }

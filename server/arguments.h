@@ -16,17 +16,20 @@ struct Arguments {
   bool fast = false;
   std::int64_t steps = 0;  ///< 0: until stopped.
   double publish_rate = 0.0;
-  std::string world_name;
-  std::string lcm_url;  ///< Empty: the environment's or LCM's default.
+  std::string world_name;  ///< Empty: the default, or the log's.
+  std::string lcm_url;     ///< Empty: the environment's or LCM's default.
   std::optional<double> time_step;
   std::optional<Accuracy> accuracy;
   std::optional<Integrator> integrator;
   std::optional<Solver> solver;
+  bool packed = false;  ///< Encoding of the state.
   bool json = false;
-  bool print_scene = false, list_demos = false;
+  std::string record, replay, resume;  ///< Paths of logs; at most one is not empty.
+  double record_interval = 0.0;        ///< Simulated time between two pictures in the log [s].
+  bool print_scene = false, list_demos = false, health = false;
 
   /// With a fixed number of steps as fast as possible nobody can listen: no bus is opened unless a URL asks for it.
-  bool headless() const { return fast && steps > 0 && lcm_url.empty(); }
+  bool headless() const { return fast && steps > 0 && lcm_url.empty() && record.empty() && resume.empty(); }
 };
 
 /// Reads the command line. An exit status instead of arguments: everything is said already (help, version, an error).

@@ -5,24 +5,30 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <bit>
 #include <csignal>
 #include <cstdio>
 #include <exception>
 #include <optional>
 #include <stdexcept>
+#include <system_error>
 
 #include "arguments.h"
 #include "greeting.h"
+#include "health.h"
+#include "replay.h"
 #include "scene/demo.h"
 #include "scene/sdf.h"
 #include "server.h"
 #include "summary.h"
+#include "version.h"
 
 namespace {
 
 using namespace tumble;
 
 constexpr int kFailed = 1, kBadInput = 2;
+constexpr double kSpread = 0.8;  // part of the time between two publications over which one is sent
 
 volatile std::sig_atomic_t stop_requested = 0;
 
@@ -88,19 +94,44 @@ int run_headless(World world, const Arguments& arguments, Clock& clock) {
   return 0;
 }
 
-int run_server(World world, const std::string& scene_name, const Arguments& arguments, Clock& clock) {
+/// What a log begins with.
+recording_t make_head(const Arguments& arguments, const ServerSettings& settings, const std::string& scene,
+                      const Simulation& start, Clock& clock) {
+  recording_t head{};
+  head.utime = clock.wall_us();
+  head.session = start.session();
+  head.protocol_version = kProtocolVersion;
+  head.server_version = kVersion;
+  head.world = settings.world_name;
+  head.scene_name = settings.scene_name;
+  head.dt = start.world().options().time_step;
+  head.rate = settings.rate;
+  head.interval = arguments.record_interval;
+  head.state_hash = std::bit_cast<std::int64_t>(start.world().state_hash());
+  head.scene = scene;
+  return head;
+}
+
+ServerSettings make_settings(const Arguments& arguments, const std::string& scene_name, double time_step) {
   ServerSettings settings;
-  settings.world_name = arguments.world_name;
+  settings.world_name = arguments.world_name.empty() ? std::string(kDefaultWorld) : arguments.world_name;
   settings.scene_name = scene_name;
   settings.publish_rate = arguments.publish_rate;
   settings.steps = arguments.steps;
-  const double real_time = 1.0 / world.options().time_step;
-  settings.rate = arguments.fast ? 0.0 : arguments.rate > 0.0 ? arguments.rate : real_time;
+  settings.rate = arguments.fast ? 0.0 : arguments.rate > 0.0 ? arguments.rate : 1.0 / time_step;
+  return settings;
+}
 
+int run_server(Simulation simulation, CommandInbox inbox, const ServerSettings& settings,
+               std::optional<Recorder> recorder, const Arguments& arguments, Clock& clock) {
   Bus bus(parse_bus_url(arguments.lcm_url), settings.world_name);
-  Outbox outbox(settings.world_name, bus.payload_limit(), clock,
-                [&bus](const std::string& channel, Bytes payload) { return bus.publish(channel, payload); });
-  Server server(std::move(world), settings, clock, bus, outbox);
+  Outbox outbox(
+      settings.world_name, bus.payload_limit(), clock,
+      [&bus](const std::string& channel, Bytes payload) { return bus.publish(channel, payload); },
+      arguments.packed ? Encoding::packed : Encoding::exact,
+      static_cast<std::int64_t>(kSpread * 1e9 / settings.publish_rate));
+  Server server(std::move(simulation), settings, clock, bus, outbox, std::move(inbox));
+  if (recorder) server.set_recorder(std::move(*recorder));
   fmt::print(stderr, "{}\n", greeting(settings, bus, server.world()));
   outbox.start();
   RunWatch watch(clock);
@@ -111,18 +142,74 @@ int run_server(World world, const std::string& scene_name, const Arguments& argu
   return 0;
 }
 
-int serve(const Arguments& arguments) {
+int run_replay(const Arguments& arguments, Clock& clock) {
+  Replay replay(arguments.replay);
+  RunWatch watch(clock);
+  replay.run([&watch](const StepReport& report) { watch.note(report); }, stop_requested);
+  fmt::print(stderr, "{}\n", replay_text(replay));
+  watch.print(replay.simulation().world(), replay.steps(), arguments.json);
+  const bool damaged = replay.damage() && !replay.damage()->cut;
+  return replay.difference() || damaged ? kFailed : 0;
+}
+
+int run_resumed(const Arguments& arguments, Clock& clock) {
+  Replay replay(arguments.resume);
+  replay.run({}, stop_requested);
+  fmt::print(stderr, "{}\n", replay_text(replay));
+  if (stop_requested != 0) return 0;
+  if (replay.difference())
+    throw std::runtime_error(arguments.resume + ": can't go on from a run that differs");
+  if (replay.damage() && !replay.damage()->cut) {
+    throw std::runtime_error(
+        fmt::format("{0}: won't overwrite what follows the damage; to go on from before it:\n"
+                    "  head -c {1} {0} > sound.lcm && tumble-server --resume sound.lcm",
+                    arguments.resume, replay.damage()->offset));
+  }
+  recording_t head = replay.head();
+  Arguments with_log = arguments;
+  if (with_log.world_name.empty()) with_log.world_name = head.world;
+  const ServerSettings settings = make_settings(with_log, head.scene_name, head.dt);
+  EventLogWriter log(arguments.resume, replay.log_size(), replay.log_events());
+  return run_server(std::move(replay.simulation()), std::move(replay.inbox()), settings,
+                    Recorder(std::move(log), head, replay.checksum()), arguments, clock);
+}
+
+int serve_scene(const Arguments& arguments, Clock& clock) {
   const Scene scene = read_scene(arguments);
   if (arguments.print_scene) {
     fmt::print("{}", write_sdf(scene));
     return 0;
   }
-  World world = build_world(scene);
+  if (arguments.headless()) return run_headless(build_world(scene), arguments, clock);
+  const std::string name = arguments.scene.empty() ? "demo " + arguments.demo : arguments.scene;
+  const ServerSettings settings = make_settings(arguments, name, scene.options.time_step);
+  if (arguments.record.empty()) {
+    return run_server(Simulation(build_world(scene), random_session()), {}, settings, std::nullopt, arguments,
+                      clock);
+  }
+  // What runs is what stands in the log.
+  const std::string text = write_sdf(scene);
+  Simulation simulation(build_world(read_sdf_text(text, name, ".").scene), random_session());
+  EventLogWriter log(arguments.record);
+  Recorder recorder(std::move(log), make_head(arguments, settings, text, simulation, clock));
+  return run_server(std::move(simulation), {}, settings, std::move(recorder), arguments, clock);
+}
+
+int check_health(const Arguments& arguments) {
+  constexpr double kPatience = 2.0;  // [s]: four heartbeats
+  const std::string world = arguments.world_name.empty() ? std::string(kDefaultWorld) : arguments.world_name;
+  const BusAddress bus = parse_bus_url(arguments.lcm_url);
+  if (hears_heartbeat(bus, world, kPatience)) return 0;
+  throw std::runtime_error(fmt::format("no server of {} is heard on {}", world, bus.url));
+}
+
+int serve(const Arguments& arguments) {
+  if (arguments.health) return check_health(arguments);
   SystemClock clock;
   install_signals();
-  if (arguments.headless()) return run_headless(std::move(world), arguments, clock);
-  const std::string name = arguments.scene.empty() ? "demo " + arguments.demo : arguments.scene;
-  return run_server(std::move(world), name, arguments, clock);
+  if (!arguments.replay.empty()) return run_replay(arguments, clock);
+  if (!arguments.resume.empty()) return run_resumed(arguments, clock);
+  return serve_scene(arguments, clock);
 }
 
 }  // namespace
@@ -144,7 +231,7 @@ int main(int argc, char** argv) {
   } catch (const std::invalid_argument& error) {
     spdlog::error("{}", error.what());
     return kBadInput;
-  } catch (const std::exception& error) {
+  } catch (const std::exception& error) {  // the system's: the bus, a file
     spdlog::error("{}", error.what());
     return kFailed;
   }

@@ -6,12 +6,13 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <random>
+#include <system_error>
 #include <utility>
 
-#include "apply_command.h"
+#include "answer_query.h"
+#include "host_name.h"
 #include "stats.h"
 #include "tumble/ack_t.hpp"
 #include "version.h"
@@ -21,26 +22,15 @@ namespace {
 
 /// Datagrams read in a tick: far above what a fleet of clients sends in 1/240 s, far below what would stall a step.
 constexpr int kReceiveBudget = 2000;
-constexpr std::int64_t kPausedNapNs = 1'000'000;       // between ticks of a paused server without a rate
+/// Questions answered in a tick; who is not answered asks again.
+constexpr std::size_t kMaxQueries = 256;
+constexpr std::int64_t kPausedNapNs = 4'000'000;  // between ticks of a paused server, unless a message comes
+constexpr std::int64_t kHeartbeatGapNs = 50'000'000;  // between heartbeats, however often the world is paused
 constexpr std::int64_t kWarnAgainNs = 60'000'000'000;  // about the same second server
 constexpr int kRunBits = 16;                           // of the session: counts resets
 
 std::int64_t period_ns(double rate) {
   return static_cast<std::int64_t>(1e9 / rate);
-}
-
-/// Positive, random but for its lowest bits, which count the resets.
-std::int64_t random_session() {
-  std::random_device random;
-  const std::uint64_t high = random(), low = random();
-  const std::uint64_t bits = (high << 32 | low) >> 1;
-  return static_cast<std::int64_t>(bits >> kRunBits << kRunBits) + 1;
-}
-
-std::string host_name() {
-  std::array<char, 256> name{};
-  ::gethostname(name.data(), name.size() - 1);
-  return name.data();
 }
 
 /// True once `next` is reached; moves it on by `period`, without making up for what was missed.
@@ -53,36 +43,40 @@ bool is_due(std::int64_t now, std::int64_t& next, std::int64_t period) {
 
 }  // namespace
 
-Server::Server(World world, ServerSettings settings, Clock& clock, Bus& bus, Outbox& outbox)
+std::int64_t random_session() {
+  std::random_device random;
+  const std::uint64_t high = random(), low = random();
+  const std::uint64_t bits = (high << 32 | low) >> 1;
+  return static_cast<std::int64_t>(bits >> kRunBits << kRunBits) + 1;
+}
+
+Server::Server(Simulation simulation, ServerSettings settings, Clock& clock, Bus& bus, Outbox& outbox,
+               CommandInbox inbox)
     : settings_(std::move(settings)),
       clock_(clock),
       bus_(bus),
       outbox_(outbox),
-      start_(world),
-      world_(std::move(world)),
+      simulation_(std::move(simulation)),
+      inbox_(std::move(inbox)),
       pacer_(settings_.rate > 0.0 ? settings_.rate : 1.0),
       stage_done_([this](Stage stage) { meter_.end_stage(stage, clock_.now_ns()); }),
       host_(host_name()) {
   const std::string& name = settings_.world_name;
   bus_.subscribe(channel_name(name, kForceSuffix), [this](Bytes bytes) { inbox_.receive_force(bytes); });
   bus_.subscribe(channel_name(name, kControlSuffix), [this](Bytes bytes) { inbox_.receive_control(bytes); });
+  bus_.subscribe(channel_name(name, kQuerySuffix), [this](Bytes bytes) { note_query(bytes); });
   bus_.subscribe(channel_name(name, kHeartbeatSuffix), [this](Bytes bytes) { notice_heartbeat(bytes); });
-  start_session(random_session());
-}
-
-void Server::start_session(std::int64_t session) {
-  session_ = session;
-  start_sums_ = world_.compute_conserved();
-  watched_.clear();
-  catalog_ = nullptr;
-  changed_ = true;
+  inbox_.on_waiting([this](const Command& command, std::int64_t start_step) {
+    record(
+        [&](Recorder& r) { r.note_command(command, start_step, simulation_.session(), clock_.wall_us()); });
+  });
 }
 
 void Server::tick() {
   meter_.begin_tick(clock_.now_ns());
   receive_commands();
   meter_.end_commands(clock_.now_ns());
-  if (!paused_) step();
+  if (!simulation_.paused()) step();
   publish_when_due();
   meter_.end_tick(clock_.now_ns());
   report_when_due();
@@ -100,102 +94,48 @@ void Server::run(const volatile std::sig_atomic_t& stop) {
 
 void Server::wait() {
   const std::int64_t now = clock_.now_ns();
-  if (hurrying()) {
+  if (simulation_.paused()) {
     pacer_.restart(now);
-    if (paused_) clock_.sleep_until(now + kPausedNapNs);
-    return;
+    bus_.wait(kPausedNapNs);
+  } else if (hurrying()) {
+    pacer_.restart(now);
+  } else {
+    pacer_.advance(now);
+    clock_.sleep_until(pacer_.due());
   }
-  pacer_.advance(now);
-  clock_.sleep_until(pacer_.due());
 }
 
 // Commands
 
 void Server::receive_commands() {
-  inbox_.set_now(session_, now_step());
+  inbox_.set_now(simulation_.session(), simulation_.now_step());
   bus_.receive(kReceiveBudget);
-  for (const Command& command : inbox_.take_due()) {
-    inbox_.settle(command, apply(command));
+  const std::vector<Command> due = inbox_.take_due();
+  record([&](Recorder& r) {
+    for (const Command& command : due) {
+      r.note_command(command, simulation_.now_step(), simulation_.session(), clock_.wall_us());
+    }
+    r.flush();  // nothing is answered that could still be lost
+  });
+  for (const Command& command : due) apply(command);
+  // Who asks again while the world stands still may have missed the state as well as the answer.
+  if (inbox_.counters().repeated != std::exchange(repeated_, inbox_.counters().repeated) &&
+      simulation_.paused()) {
+    tell_all_ = changed_ = true;
   }
   send_answers();
+  answer_queries();
   log_damaged();
 }
 
-Outcome Server::apply(const Command& command) {
-  if (command.session != 0 && command.session != session_) {  // a reset came before it in the same tick
-    return {.status = Status::wrong_session, .detail = status_text(Status::wrong_session)};
-  }
-  if (const auto* force = std::get_if<force_command_t>(&command.content)) return apply_force(world_, *force);
-  return apply_control(std::get<control_t>(command.content));
-}
-
-Outcome Server::apply_control(const control_t& command) {
-  changed_ = true;
-  const Outcome done{.step = now_step()};
-  switch (command.verb) {
-    case control_t::VERB_SPAWN:
-      return apply_spawn(world_, command);
-    case control_t::VERB_REMOVE:
-      return apply_remove(world_, command);
-    case control_t::VERB_SET_STATE:
-      return apply_set_state(world_, command);
-    case control_t::VERB_RESET:
-      reset();
-      return {.step = now_step()};
-    case control_t::VERB_PAUSE:
-      paused_ = true;
-      steps_wanted_ = 0;
-      next_heartbeat_ = 0;
-      return done;
-    case control_t::VERB_RESUME:
-      paused_ = false;
-      steps_wanted_ = 0;
-      next_heartbeat_ = 0;
-      return done;
-    case control_t::VERB_STEP:
-      paused_ = false;
-      steps_wanted_ = command.count;
-      return done;
-    case control_t::VERB_WATCH:
-      return watch(command);
-    case control_t::VERB_UNWATCH:
-      return unwatch(command);
-    case control_t::VERB_CONTACTS_ON:
-      contacts_wanted_ = true;
-      return done;
-    case control_t::VERB_CONTACTS_OFF:
-      contacts_wanted_ = false;
-      return done;
-    default:
-      return {.status = Status::unknown_verb, .detail = status_text(Status::unknown_verb)};
-  }
-}
-
-Outcome Server::watch(const control_t& command) {
-  const Outcome found = find_body(world_, command.body, command.generation);
-  if (found.status != Status::applied) return found;
-  std::erase_if(watched_, [this](BodyId id) { return !world_.is_valid(id); });
-  const BodyId id{static_cast<std::uint32_t>(found.body), static_cast<std::uint32_t>(found.generation)};
-  if (std::find(watched_.begin(), watched_.end(), id) != watched_.end()) return found;
-  if (watched_.size() == kMaxWatched) {
-    return {.status = Status::out_of_range,
-            .detail = fmt::format("{} bodies are watched already", kMaxWatched)};
-  }
-  watched_.push_back(id);
-  return found;
-}
-
-Outcome Server::unwatch(const control_t& command) {
-  const Outcome found = find_body(world_, command.body, command.generation);
-  std::erase_if(watched_, [&](BodyId id) { return id.index == static_cast<std::uint32_t>(command.body); });
-  return found;
-}
-
-void Server::reset() {
-  world_ = start_;
+void Server::apply(const Command& command) {
+  const std::int64_t session = simulation_.session();
+  inbox_.settle(command, simulation_.apply(command));
+  if (std::holds_alternative<control_t>(command.content)) changed_ = true;
+  if (simulation_.session() == session) return;
   inbox_.cancel_pending();
-  start_session(session_ + 1);
-  inbox_.set_now(session_, now_step());
+  inbox_.set_now(simulation_.session(), simulation_.now_step());
+  catalog_ = nullptr;
   next_heartbeat_ = 0;
 }
 
@@ -204,11 +144,29 @@ void Server::send_answers() {
   if (answers.empty()) return;
   ack_t head{};
   head.utime = clock_.wall_us();
-  head.session = session_;
-  head.step = now_step();
+  head.session = simulation_.session();
+  head.step = simulation_.now_step();
   pack_acknowledgements(answers, head, bus_.payload_limit(), [this](const ack_t& message) {
     post(channel_name(settings_.world_name, kAckSuffix), message);
   });
+}
+
+void Server::note_query(Bytes bytes) {
+  query_t query{};
+  const Malformed reason = decode(bytes, query);
+  if (reason != Malformed::none) return inbox_.count_malformed(reason);
+  if (queries_.size() < kMaxQueries) queries_.push_back(query);
+}
+
+void Server::answer_queries() {
+  for (const query_t& query : std::exchange(queries_, {})) {
+    const bool ours = query.session == 0 || query.session == simulation_.session();
+    hits_t answer = ours ? answer_query(world(), query, bus_.payload_limit())
+                         : refuse_query(query, Status::wrong_session, status_text(Status::wrong_session));
+    answer.utime = clock_.wall_us();
+    answer.session = simulation_.session();
+    post(channel_name(settings_.world_name, kHitsSuffix), answer);
+  }
 }
 
 void Server::log_damaged() {
@@ -222,14 +180,17 @@ void Server::log_damaged() {
 // Stepping and telling
 
 void Server::step() {
-  world_.step(stage_done_);
+  simulation_.step(stage_done_);
   meter_.end_step(clock_.now_ns());
   ++steps_done_;
-  if (observer_) observer_(world_.report());
-  if (steps_wanted_ > 0 && --steps_wanted_ == 0) {
-    paused_ = true;
+  record([&](Recorder& r) {
+    r.end_step(simulation_, clock_.wall_us());
+    r.flush();
+  });
+  if (observer_) observer_(world().report());
+  if (simulation_.paused()) {  // the last step that was asked for
     changed_ = true;
-    next_heartbeat_ = 0;
+    hasten_heartbeat();
   }
 }
 
@@ -241,45 +202,57 @@ void Server::publish_when_due() {
 
 void Server::publish(std::int64_t now) {
   changed_ = false;
-  if (!catalog_ || catalog_model_ != world_.model_epoch()) {
-    catalog_model_ = world_.model_epoch();
-    catalog_ = make_catalog(world_, ++catalog_epoch_, catalog_.get());
+  if (!catalog_ || catalog_model_ != world().model_epoch()) {
+    catalog_model_ = world().model_epoch();
+    catalog_ = make_catalog(world(), ++catalog_epoch_, catalog_.get());
   }
   std::unique_ptr<WorldView> view = spare_view_ ? std::move(spare_view_) : std::make_unique<WorldView>();
   view->utime = clock_.wall_us();
-  view->session = session_;
+  view->session = simulation_.session();
   view->catalog = catalog_;
-  const bool contacts = contacts_wanted_ && is_due(now, next_contacts_, period_ns(kContactsRate));
-  copy_world(world_, {watched_, contacts}, *view);
+  view->whole = std::exchange(tell_all_, false);
+  view->at_once = simulation_.paused();
+  const bool contacts =
+      simulation_.contacts_wanted() && is_due(now, next_contacts_, period_ns(kContactsRate));
+  view->has_pushes = simulation_.pushes_wanted() && is_due(now, next_pushes_, period_ns(kContactsRate));
+  if (view->has_pushes) view->pushes = simulation_.view_pushes();
+  copy_world(world(), {simulation_.watched(), contacts}, *view);
   spare_view_ = outbox_.offer(std::move(view));
   meter_.end_publication(clock_.now_ns());
 }
 
 void Server::report_when_due() {
   const std::int64_t now = clock_.now_ns();
+  if (simulation_.paused() != told_paused_) hasten_heartbeat();
   if (is_due(now, next_heartbeat_, period_ns(kHeartbeatRate))) send_heartbeat();
   if (is_due(now, next_stats_, period_ns(kStatsRate))) send_stats();
 }
 
+void Server::hasten_heartbeat() {
+  next_heartbeat_ = std::min(next_heartbeat_, last_heartbeat_ + kHeartbeatGapNs);
+}
+
 void Server::send_heartbeat() {
+  told_paused_ = simulation_.paused();
+  last_heartbeat_ = clock_.now_ns();
   heartbeat_t message{};
   message.utime = clock_.wall_us();
-  message.session = session_;
+  message.session = simulation_.session();
   message.protocol_version = kProtocolVersion;
   message.pid = ::getpid();
   message.host = host_;
   message.server_version = kVersion;
   message.world = settings_.world_name;
   message.scene = settings_.scene_name;
-  message.step = now_step();
-  message.time = world_.time();
-  message.dt = world_.options().time_step;
+  message.step = simulation_.now_step();
+  message.time = world().time();
+  message.dt = world().options().time_step;
   message.rate = settings_.rate;
   message.publish_rate = settings_.publish_rate;
-  message.paused = paused_ ? 1 : 0;
-  message.state_hash = std::bit_cast<std::int64_t>(world_.state_hash());
+  message.paused = simulation_.paused() ? 1 : 0;
+  message.state_hash = std::bit_cast<std::int64_t>(world().state_hash());
   message.catalog_epoch = catalog_epoch_;
-  message.num_bodies = static_cast<std::int32_t>(world_.body_count());
+  message.num_bodies = static_cast<std::int32_t>(world().body_count());
   message.payload_limit = static_cast<std::int32_t>(bus_.payload_limit());
   post(channel_name(settings_.world_name, kHeartbeatSuffix), message);
 }
@@ -287,20 +260,21 @@ void Server::send_heartbeat() {
 void Server::send_stats() {
   stats_t message{};
   message.utime = clock_.wall_us();
-  message.session = session_;
-  message.paused = paused_ ? 1 : 0;
+  message.session = simulation_.session();
+  message.paused = simulation_.paused() ? 1 : 0;
   const OutboxCounters sent = outbox_.counters();
-  meter_.report(clock_.now_ns(), world_.options().time_step, sent.busy_ns, message);
+  meter_.report(clock_.now_ns(), world().options().time_step, sent.busy_ns, message);
   message.overruns = pacer_.overruns();
   message.steps_skipped = pacer_.steps_skipped();
-  fill_world_stats(world_, start_sums_, message);
+  fill_world_stats(world(), simulation_.start_sums(), message);
   fill_network_stats(inbox_.counters(), sent, message);
   post(channel_name(settings_.world_name, kStatsSuffix), message);
 }
 
 void Server::notice_heartbeat(Bytes bytes) {
   heartbeat_t other{};
-  if (decode(bytes, other) != Malformed::none || other.session >> kRunBits == session_ >> kRunBits) {
+  if (decode(bytes, other) != Malformed::none ||
+      other.session >> kRunBits == simulation_.session() >> kRunBits) {
     return;
   }
   const std::string name = fmt::format("{} pid {}", other.host, other.pid);
@@ -314,6 +288,17 @@ void Server::notice_heartbeat(Bytes bytes) {
       "one, "
       "or give one another --world or --lcm-url",
       settings_.world_name, other.host, other.pid, other.scene);
+}
+
+template <typename Write>
+void Server::record(Write write) {
+  if (!recorder_) return;
+  try {
+    write(*recorder_);
+  } catch (const std::system_error& error) {
+    spdlog::error("the recording ends here: {}", error.what());
+    recorder_.reset();
+  }
 }
 
 template <typename Message>

@@ -1,6 +1,8 @@
 // See bus.h.
 #include "net/bus.h"
 
+#include <poll.h>
+
 #include <system_error>
 
 #include "protocol/bus_probe.h"
@@ -70,6 +72,13 @@ int Bus::receive(int budget) {
       if (subscription->channel == channel) subscription->handler(payload);
     }
   });
+}
+
+void Bus::wait(std::int64_t ns) const {
+  constexpr std::int64_t kSecond = 1'000'000'000;
+  pollfd waiting{.fd = socket_ ? socket_->fd() : lcm_get_fileno(lcm_), .events = POLLIN, .revents = 0};
+  const timespec time{ns / kSecond, ns % kSecond};
+  ::ppoll(&waiting, 1, &time, nullptr);
 }
 
 int Bus::receive_lcm(int budget) {

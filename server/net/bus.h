@@ -41,6 +41,9 @@ class Bus {
   /// Handles the waiting messages, at most `budget`, without blocking; returns how many.
   int receive(int budget);
 
+  /// Returns when a message waits or `ns` have passed, whichever is first.
+  void wait(std::int64_t ns) const;
+
   std::size_t payload_limit() const { return payload_limit_; }  ///< [bytes] for everything the server sends
   const BusAddress& address() const { return address_; }
   const std::string& interface() const { return interface_; }  ///< Of the multicast route; empty if unknown.

@@ -80,13 +80,16 @@ Outcome check_values(const force_command_t& c) {
 }
 
 Outcome check_values(const control_t& c) {
-  if (c.verb < control_t::VERB_SPAWN || c.verb > control_t::VERB_CONTACTS_OFF) {
+  if (c.verb < control_t::VERB_SPAWN || c.verb > control_t::VERB_PUSHES_OFF) {
     return {.status = Status::unknown_verb, .detail = fmt::format("verb: {} is not known", c.verb)};
   }
   if (!all_finite(c)) return refuse_not_finite();
   RangeCheck check;
   if (c.verb == control_t::VERB_SPAWN) check_spawn(c, check);
   if (c.verb == control_t::VERB_SET_STATE) check_motion(c, check);
+  if (c.verb == control_t::VERB_SNAPSHOT || c.verb == control_t::VERB_RESTORE) {
+    check.demand(!c.name.empty(), "name: a snapshot needs one");
+  }
   if (c.verb == control_t::VERB_STEP) {
     check.demand(c.count >= 1 && c.count <= kMaxStepCount,
                  fmt::format("count: {} is not in 1 .. {}", c.count, kMaxStepCount));

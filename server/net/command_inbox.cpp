@@ -35,7 +35,7 @@ void CommandInbox::receive(Bytes bytes) {
   Message message{};
   const Malformed reason = decode(bytes, message);
   if (reason == Malformed::none) return admit(message);
-  ++counters_.malformed[static_cast<std::size_t>(reason)];
+  count_malformed(reason);
   // Not entered in the history: the sound original of a damaged copy may still come.
   const Sender sender = read_sender(bytes);
   if (sender.client != 0 && sender.sequence > 0 && history_.find(sender.client, sender.sequence) == nullptr) {
@@ -72,11 +72,26 @@ void CommandInbox::admit(const Message& message) {
     outcome = {.status = Status::queue_full, .detail = fmt::format("{} commands wait", pending_.size())};
   }
   if (outcome.status != Status::applied) return settle(client, sequence, std::move(outcome));
-  pending_.emplace(Key{start, client, sequence},
-                   Command{client, sequence, message.session, message.expiry_step, message});
-  Outcome& noted = *history_.find(client, sequence);
-  noted.step = start;
-  if (start > step_) answer(client, sequence, noted);
+  const Command command{client, sequence, message.session, message.expiry_step, message};
+  enqueue(command, start);
+  if (start == step_) return;
+  answer(client, sequence, *history_.find(client, sequence));
+  if (waiting_observer_) waiting_observer_(command, start);
+}
+
+void CommandInbox::enqueue(const Command& command, std::int64_t start_step) {
+  pending_.emplace(Key{start_step, command.client, command.sequence}, command);
+  history_.find(command.client, command.sequence)->step = start_step;
+}
+
+void CommandInbox::readmit(const Command& command, std::int64_t start_step) {
+  if (history_.enter(command.client, command.sequence) == ClientHistory::Novelty::fresh)
+    enqueue(command, start_step);
+}
+
+void CommandInbox::withdraw(const Command& command) {
+  const Outcome* noted = history_.find(command.client, command.sequence);
+  if (noted != nullptr) pending_.erase(Key{noted->step, command.client, command.sequence});
 }
 
 std::vector<Command> CommandInbox::take_due() {

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <tuple>
 #include <utility>
@@ -44,12 +45,25 @@ class CommandInbox {
   void set_now(std::int64_t session, std::int64_t step);
   void receive_force(Bytes bytes);
   void receive_control(Bytes bytes);
+  /// Another message could not be read.
+  void count_malformed(Malformed reason) { ++counters_.malformed[static_cast<std::size_t>(reason)]; }
+
+  /// `observer` hears of every command that is accepted to wait for a later step, and for which.
+  void on_waiting(std::function<void(const Command&, std::int64_t start_step)> observer) {
+    waiting_observer_ = std::move(observer);
+  }
 
   /// The commands that act at the step of set_now(), in order. Each must be settled.
   std::vector<Command> take_due();
   void settle(const Command& command, Outcome outcome);
   /// Answers every waiting command with `cancelled`: the world was reset.
   void cancel_pending();
+
+  // From a log: commands that were accepted before.
+  /// Enters the command in the history and in the queue, unless it is there.
+  void readmit(const Command& command, std::int64_t start_step);
+  /// Takes the command out of the queue, to be settled.
+  void withdraw(const Command& command);
 
   /// The answers since the last call, one for every copy received; call it when what was due is settled.
   std::vector<Acknowledgement> take_answers();
@@ -63,6 +77,7 @@ class CommandInbox {
   void receive(Bytes bytes);
   template <typename Message>
   void admit(const Message& message);
+  void enqueue(const Command& command, std::int64_t start_step);
   void answer(std::int64_t client, std::int64_t sequence, const Outcome& outcome);
   void answer_again(std::int64_t client, std::int64_t sequence);
   void settle(std::int64_t client, std::int64_t sequence, Outcome outcome);
@@ -73,6 +88,7 @@ class CommandInbox {
   std::vector<Acknowledgement> answers_;
   std::vector<std::pair<std::int64_t, std::int64_t>> unanswered_;  // copies of commands that are due now
   InboxCounters counters_;
+  std::function<void(const Command&, std::int64_t)> waiting_observer_;
 };
 
 }  // namespace tumble

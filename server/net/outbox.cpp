@@ -4,6 +4,7 @@
 #include <signal.h>
 
 #include <algorithm>
+#include <chrono>
 #include <utility>
 
 namespace tumble {
@@ -14,8 +15,12 @@ constexpr std::int64_t kStopNs = 200'000'000;
 
 }  // namespace
 
-Outbox::Outbox(std::string world_name, std::size_t payload_limit, Clock& clock, Send send)
-    : clock_(clock), send_(std::move(send)), publisher_(std::move(world_name), payload_limit) {}
+Outbox::Outbox(std::string world_name, std::size_t payload_limit, Clock& clock, Send send, Encoding encoding,
+               std::int64_t spread)
+    : clock_(clock),
+      send_(std::move(send)),
+      spread_(spread),
+      publisher_(std::move(world_name), payload_limit, encoding) {}
 
 Outbox::~Outbox() {
   stop();
@@ -51,18 +56,12 @@ std::unique_ptr<WorldView> Outbox::offer(std::unique_ptr<WorldView> view) {
 std::int64_t Outbox::pump() {
   const std::int64_t start = clock_.now_ns();
   std::int64_t now = start, due = kIdle;
-  while (take_next()) {
-    const bool over = burst_messages_ >= kBurstMessages || burst_bytes_ + next_.bytes.size() > kBurstBytes;
-    if (over || now >= burst_start_ + kBurstNs) {
-      if (now < burst_start_ + kBurstNs) {
-        due = burst_start_ + kBurstNs;
-        break;
-      }
-      burst_start_ = now;
-      burst_messages_ = 0;
-      burst_bytes_ = 0;
+  while (Message* message = take_message(now, due)) {
+    if (!has_room(*message, now)) {
+      due = burst_start_ + kBurstNs;
+      break;
     }
-    send_next();
+    send(*message);
     now = clock_.now_ns();
   }
   const std::lock_guard lock(mutex_);
@@ -70,19 +69,27 @@ std::int64_t Outbox::pump() {
   return due;
 }
 
-/// Makes `next_` the message to send: the one that waits already, an urgent one, or the publication's next.
-bool Outbox::take_next() {
-  if (!next_.channel.empty()) return true;
-  {
+/// The message to send now: an urgent one, or the publication's next if it is its time. Null: none before `due`.
+Outbox::Message* Outbox::take_message(std::int64_t now, std::int64_t& due) {
+  if (next_urgent_.channel.empty()) {
     const std::lock_guard lock(mutex_);
     if (!urgent_.empty()) {
-      next_ = std::move(urgent_.front());
+      next_urgent_ = std::move(urgent_.front());
       urgent_.pop_front();
-      return true;
     }
   }
+  if (!next_urgent_.channel.empty()) return &next_urgent_;
+  if (next_published_.channel.empty() && !take_published()) return nullptr;
+  const std::int64_t when = publication_start_ + sent_of_publication_ * gap_ / kBurstNs * kBurstNs;
+  if (now >= when) return &next_published_;
+  due = when;
+  return nullptr;
+}
+
+/// Encodes the publication's next message; false: there is none.
+bool Outbox::take_published() {
   while (current_ || take_view()) {
-    if (publisher_.next(next_.channel, next_.bytes)) return true;
+    if (publisher_.next(next_published_.channel, next_published_.bytes)) return true;
     const std::lock_guard lock(mutex_);
     ++counters_.frames;
     spare_ = std::move(current_);
@@ -95,22 +102,39 @@ bool Outbox::take_view() {
     const std::lock_guard lock(mutex_);
     current_ = std::move(waiting_);
   }
-  if (current_) publisher_.begin(*current_, clock_.now_ns());
-  return current_ != nullptr;
+  if (!current_) return false;
+  publication_start_ = clock_.now_ns();
+  sent_of_publication_ = 0;
+  publisher_.begin(*current_, publication_start_);
+  const auto count = static_cast<std::int64_t>(publisher_.count());
+  gap_ = count > kBurstMessages && !current_->at_once ? spread_ / count : 0;
+  return true;
 }
 
-void Outbox::send_next() {
-  const bool sent = send_(next_.channel, next_.bytes);
+/// Whether the message fits the burst; starts a new one when it is time.
+bool Outbox::has_room(const Message& message, std::int64_t now) {
+  if (now >= burst_start_ + kBurstNs) {
+    burst_start_ = now;
+    burst_messages_ = 0;
+    burst_bytes_ = 0;
+  }
+  return burst_messages_ < kBurstMessages &&
+         (burst_messages_ == 0 || burst_bytes_ + message.bytes.size() <= kBurstBytes);
+}
+
+void Outbox::send(Message& message) {
+  const bool sent = send_(message.channel, message.bytes);
   ++burst_messages_;
-  burst_bytes_ += next_.bytes.size();
+  burst_bytes_ += message.bytes.size();
+  if (&message == &next_published_) ++sent_of_publication_;
   const std::lock_guard lock(mutex_);
   if (sent) {
     ++counters_.datagrams;
-    counters_.bytes += next_.bytes.size();
+    counters_.bytes += message.bytes.size();
   } else {
     ++counters_.errors;
   }
-  next_.channel.clear();
+  message.channel.clear();
 }
 
 void Outbox::start() {
@@ -144,9 +168,12 @@ void Outbox::run() {
     }
     if (due == kIdle) {
       changed_.wait(lock, [this] { return stopping_ || !urgent_.empty() || waiting_; });
-    } else {
+    } else if (!urgent_.empty() || stopping_) {  // the burst is full
       lock.unlock();
       clock_.sleep_until(due);
+    } else {
+      const std::chrono::nanoseconds wait(due - clock_.now_ns());
+      changed_.wait_for(lock, wait, [this] { return stopping_ || !urgent_.empty(); });
     }
   }
 }

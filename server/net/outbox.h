@@ -38,7 +38,9 @@ class Outbox {
   static constexpr std::size_t kBurstBytes = 2 * kLoopbackPayload;
   static constexpr std::int64_t kBurstNs = 1'000'000;
 
-  Outbox(std::string world_name, std::size_t payload_limit, Clock& clock, Send send);
+  /// `spread`: a publication of more than a burst is spread evenly over so long [ns], unless somebody waits for it.
+  Outbox(std::string world_name, std::size_t payload_limit, Clock& clock, Send send,
+         Encoding encoding = Encoding::exact, std::int64_t spread = 0);
   ~Outbox();
 
   /// Sends `bytes` soon. Any thread.
@@ -60,12 +62,15 @@ class Outbox {
     std::vector<std::uint8_t> bytes;
   };
   void run();
-  bool take_next();
+  Message* take_message(std::int64_t now, std::int64_t& due);
+  bool take_published();
   bool take_view();
-  void send_next();
+  bool has_room(const Message& message, std::int64_t now);
+  void send(Message& message);
 
   Clock& clock_;
   Send send_;
+  std::int64_t spread_;
 
   mutable std::mutex mutex_;  // guards this block
   std::condition_variable changed_;
@@ -77,7 +82,10 @@ class Outbox {
   // Of the pumping thread alone.
   StatePublisher publisher_;
   std::unique_ptr<WorldView> current_;
-  Message next_;
+  Message next_urgent_, next_published_;  // taken, not sent yet; without a channel: none
+  std::int64_t publication_start_ = 0;    // now_ns
+  std::int64_t gap_ = 0;                  // between two messages of the publication [ns]
+  std::int64_t sent_of_publication_ = 0;
   std::int64_t burst_start_ = std::numeric_limits<std::int64_t>::min() / 2;
   int burst_messages_ = 0;
   std::size_t burst_bytes_ = 0;

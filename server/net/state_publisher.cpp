@@ -7,12 +7,21 @@
 #include "protocol/codec.h"
 #include "tumble/body_state_t.hpp"
 #include "tumble/contacts_t.hpp"
+#include "tumble/pushes_t.hpp"
 
 namespace tumble {
 namespace {
 
 /// Two ids and ten doubles.
 constexpr std::size_t kBytesPerContact = 2 * 4 + 10 * 8;
+/// An id and ten doubles.
+constexpr std::size_t kBytesPerPush = 4 + 10 * 8;
+
+/// Rows of `size` that fit a message beside what it holds when it has none.
+template <typename Message>
+std::size_t rows_per_message(std::size_t payload_limit, std::size_t size) {
+  return (payload_limit - static_cast<std::size_t>(Message{}.getEncodedSize())) / size;
+}
 
 void push_contact(const ContactView& contact, contacts_t& message) {
   ++message.n;
@@ -32,14 +41,17 @@ void push_contact(const ContactView& contact, contacts_t& message) {
 
 }  // namespace
 
-StatePublisher::StatePublisher(std::string world_name, std::size_t payload_limit)
+StatePublisher::StatePublisher(std::string world_name, std::size_t payload_limit, Encoding encoding)
     : world_name_(std::move(world_name)),
       state_channel_(channel_name(world_name_, kStateSuffix)),
+      packed_channel_(channel_name(world_name_, kPackedSuffix)),
       catalog_channel_(channel_name(world_name_, kCatalogSuffix)),
       contacts_channel_(channel_name(world_name_, kContactsSuffix)),
-      contacts_per_message_((payload_limit - static_cast<std::size_t>(contacts_t{}.getEncodedSize())) /
-                            kBytesPerContact),
-      state_(payload_limit),
+      pushes_channel_(channel_name(world_name_, kPushesSuffix)),
+      encoding_(encoding),
+      contacts_per_message_(rows_per_message<contacts_t>(payload_limit, kBytesPerContact)),
+      pushes_per_message_(rows_per_message<pushes_t>(payload_limit, kBytesPerPush)),
+      state_(payload_limit, encoding),
       catalog_(payload_limit) {}
 
 void StatePublisher::begin(const WorldView& view, std::int64_t now_ns) {
@@ -50,6 +62,7 @@ void StatePublisher::begin(const WorldView& view, std::int64_t now_ns) {
                             ? std::max<std::size_t>(1, (view.contacts.size() + contacts_per_message_ - 1) /
                                                            contacts_per_message_)
                             : 0;
+  pushes_told_ = !view.has_pushes;
   state_.begin(view, now_ns);
   catalog_.begin(view, now_ns);
 }
@@ -59,11 +72,7 @@ bool StatePublisher::next(std::string& channel, std::vector<std::uint8_t>& bytes
     encode_watched(view_->watched[watched_++], channel, bytes);
     return true;
   }
-  if (state_.next(state_message_)) {
-    channel = state_channel_;
-    encode(state_message_, bytes);
-    return true;
-  }
+  if (encode_state(channel, bytes)) return true;
   if (catalog_.next(catalog_message_)) {
     channel = catalog_channel_;
     encode(catalog_message_, bytes);
@@ -74,7 +83,51 @@ bool StatePublisher::next(std::string& channel, std::vector<std::uint8_t>& bytes
     encode_contacts(bytes);
     return true;
   }
+  if (!pushes_told_) {
+    pushes_told_ = true;
+    channel = pushes_channel_;
+    encode_pushes(bytes);
+    return true;
+  }
   return false;
+}
+
+bool StatePublisher::encode_state(std::string& channel, std::vector<std::uint8_t>& bytes) {
+  if (encoding_ == Encoding::packed) {
+    if (!state_.next(packed_message_)) return false;
+    channel = packed_channel_;
+    encode(packed_message_, bytes);
+  } else {
+    if (!state_.next(state_message_)) return false;
+    channel = state_channel_;
+    encode(state_message_, bytes);
+  }
+  return true;
+}
+
+void StatePublisher::encode_pushes(std::vector<std::uint8_t>& bytes) const {
+  pushes_t message{};
+  message.utime = view_->utime;
+  message.session = view_->session;
+  message.step = view_->step;
+  message.time = view_->time;
+  message.num_pushes = static_cast<std::int32_t>(view_->pushes.size());
+  message.n = static_cast<std::int32_t>(std::min(view_->pushes.size(), pushes_per_message_));
+  for (std::size_t i = 0; i < static_cast<std::size_t>(message.n); ++i) {
+    const PushView& push = view_->pushes[i];
+    message.body.push_back(static_cast<std::int32_t>(push.body));
+    message.px.push_back(push.p_W.x());
+    message.py.push_back(push.p_W.y());
+    message.pz.push_back(push.p_W.z());
+    message.fx.push_back(push.force_W.x());
+    message.fy.push_back(push.force_W.y());
+    message.fz.push_back(push.force_W.z());
+    message.tx.push_back(push.torque_W.x());
+    message.ty.push_back(push.torque_W.y());
+    message.tz.push_back(push.torque_W.z());
+    message.seconds_left.push_back(push.seconds_left);
+  }
+  encode(message, bytes);
 }
 
 void StatePublisher::encode_watched(const WatchedView& watched, std::string& channel,

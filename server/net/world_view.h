@@ -60,15 +60,26 @@ struct WatchedView {
   double kinetic_energy = 0.0;
 };
 
+/// A force command that acts, as an arrow.
+struct PushView {
+  std::uint32_t body = 0;
+  Vec3 p_W, force_W, torque_W;
+  double seconds_left = 0.0;
+};
+
 struct WorldView {
   std::int64_t utime = 0, session = 0, step = 0;
   double time = 0.0;
   std::uint64_t state_hash = 0;
   std::shared_ptr<const Catalog> catalog;
+  bool whole = false;            ///< To be told of every body, changed or not.
+  bool at_once = false;          ///< Somebody waits for it: not to be spread over time.
   std::vector<BodyView> bodies;  ///< By slot.
   std::vector<WatchedView> watched;
   bool has_contacts = false;
   std::vector<ContactView> contacts;
+  bool has_pushes = false;
+  std::vector<PushView> pushes;
 };
 
 /// What a view shows beyond poses.
@@ -77,7 +88,7 @@ struct ViewRequest {
   bool contacts = false;
 };
 
-/// Copies the world into `view`, whose buffers are reused. Leaves utime, session and catalog to the caller.
+/// Copies the world into `view`, whose buffers are reused. Leaves utime, session, catalog, whole, at_once and pushes to the caller.
 void copy_world(const World& world, const ViewRequest& request, WorldView& view);
 
 }  // namespace tumble

@@ -54,6 +54,20 @@ CLI::Option* add_switch(CLI::App& command, bool& on) {
   return add_choice<bool>(command, "SWITCH", on, {{"on", true}, {"off", false}}, "Default on");
 }
 
+/// snapshot and restore.
+void add_named(CLI::App& app, const Globals& globals, Action& action, const char* verb, const char* help,
+               Answer (World::*act)(const std::string&)) {
+  auto name = std::make_shared<std::string>();
+  auto* command = app.add_subcommand(verb, help);
+  command->add_option("NAME", *name, "Name of the snapshot")->required();
+  command->callback([&globals, &action, name, act] {
+    action = [&globals, name, act] {
+      World world(globals.world_options());
+      return print_answer(globals, *name, (world.*act)(*name));
+    };
+  });
+}
+
 void add_streams(CLI::App& app, const Globals& globals, Action& action) {
   auto contacts_on = std::make_shared<bool>(true);
   auto* command = app.add_subcommand("contacts", "Stream the touching points on <WORLD>_CONTACTS: on or off");
@@ -88,6 +102,8 @@ void add_control(CLI::App& app, const Globals& globals, Action& action) {
   add_plain(app, globals, action, "resume", "Let simulated time run", &World::resume);
   add_step(app, globals, action);
   add_plain(app, globals, action, "reset", "The world as it was at the start", &World::reset);
+  add_named(app, globals, action, "snapshot", "Keep the world as it is under a name", &World::snapshot);
+  add_named(app, globals, action, "restore", "The world as it was at a snapshot", &World::restore);
   add_streams(app, globals, action);
 }
 

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "protocol/packed.h"
+
 namespace tumble::client {
 namespace {
 
@@ -34,8 +36,32 @@ bool is_complete_body(const Body& body) {
 bool Picture::merge(const state_t& message) {
   if (!adopt_session(message.session, message.utime)) return false;
   // A body that a newer epoch may have removed is not brought back by a message that was overtaken.
-  const bool may_create = message.catalog_epoch >= epoch_;
+  return merge_state(message, message.catalog_epoch >= epoch_);
+}
+
+bool Picture::merge(const packed_t& message) {
+  if (!adopt_session(message.session, message.utime)) return false;
+  state_t state;
+  unpack(message, state);
+  // Generations are cut and types are missing: the catalogue knows them. Who is not in it yet comes with a refresh.
+  for (std::size_t i = 0; i < state.id.size(); ++i) {
+    const Body* body = find(state.id[i]);
+    const auto kept = static_cast<std::uint32_t>(state.generation[i]);
+    if (body == nullptr || !body->described ||
+        static_cast<std::uint32_t>(body->generation) % kPackedGenerations != kept) {
+      state.generation[i] = -1;  // nobody's
+      continue;
+    }
+    state.generation[i] = body->generation;
+    if (body->type == catalog_t::TYPE_STATIC) state.flags[i] |= state_t::FLAG_STATIC;
+    if (body->type == catalog_t::TYPE_KINEMATIC) state.flags[i] |= state_t::FLAG_KINEMATIC;
+  }
+  return merge_state(state, false);
+}
+
+bool Picture::merge_state(const state_t& message, bool may_create) {
   note_epoch(message.catalog_epoch, message.num_bodies);
+  note_chunk(message);
   if (message.step >= step_) {
     step_ = message.step;
     time_ = message.time;
@@ -56,6 +82,15 @@ bool Picture::merge(const state_t& message) {
     body->angular_velocity = {message.wx[i], message.wy[i], message.wz[i]};
   }
   return true;
+}
+
+void Picture::note_chunk(const state_t& message) {
+  if (message.utime < publication_.utime) return;
+  if (message.utime > publication_.utime) publication_ = {message.utime, {}};
+  publication_.heard.insert(message.chunk);
+  if (static_cast<int>(publication_.heard.size()) == message.num_chunks) {
+    whole_step_ = std::max(whole_step_, message.step);
+  }
 }
 
 bool Picture::merge(const catalog_t& message) {

@@ -73,6 +73,9 @@ void World::subscribe() {
   listen(kHeartbeatSuffix, &World::on_heartbeat);
   listen(kStatsSuffix, &World::on_stats);
   listen(kAckSuffix, &World::on_ack);
+  listen(kPackedSuffix, &World::on_packed);
+  listen(kContactsSuffix, &World::on_contacts);
+  listen(kHitsSuffix, &World::on_hits);
 }
 
 template <typename Message, typename Use>
@@ -100,6 +103,18 @@ void World::on_stats(const lcm::ReceiveBuffer* buffer, const std::string&) {
 }
 void World::on_ack(const lcm::ReceiveBuffer* buffer, const std::string&) {
   receive<ack_t>(buffer, [this](const ack_t& message) { outbox_.receive(message); });
+}
+
+void World::on_packed(const lcm::ReceiveBuffer* buffer, const std::string&) {
+  receive<packed_t>(buffer, [this](const packed_t& message) { picture_.merge(message); });
+}
+void World::on_contacts(const lcm::ReceiveBuffer* buffer, const std::string&) {
+  receive<contacts_t>(buffer, [this](const contacts_t& message) { contacts_.merge(message); });
+}
+void World::on_hits(const lcm::ReceiveBuffer* buffer, const std::string&) {
+  receive<hits_t>(buffer, [this](const hits_t& message) {
+    if (message.client == outbox_.client()) hits_ = message;
+  });
 }
 
 void World::spin(double seconds) {

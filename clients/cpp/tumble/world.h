@@ -11,6 +11,7 @@
 
 #include "protocol/bus_address.h"
 #include "protocol/codec.h"
+#include "tumble/contacts.h"
 #include "tumble/outbox.h"
 #include "tumble/picture.h"
 
@@ -115,6 +116,17 @@ class World {
   /// Runs `count` steps at full speed, then pauses; returns when the command was accepted.
   Answer step(std::int64_t count);
   Answer reset();
+  /// Keeps the world as it is under a name, or goes back to what was kept, in a new session.
+  Answer snapshot(const std::string& name);
+  Answer restore(const std::string& name);
+  /// Lock-step: runs `count` steps and returns when the whole state after them is here, asking again for what the
+  /// network lost. Throws NoServer if the world stands still for the time limit.
+  Answer advance(std::int64_t count = 1);
+
+  /// A question to the world, see query_t; asked until it is answered. Throws NoServer.
+  hits_t ask(query_t query);
+  /// Every touching point of the newest step heard of; empty unless they are streamed (stream_contacts).
+  const Contacts& contacts() const { return contacts_; }
 
   // The same in two halves, for many commands at once: fill in what you want, `send`, go on, `spin`, look at `answer`.
   std::int64_t send(force_command_t command);
@@ -131,9 +143,14 @@ class World {
   void on_heartbeat(const lcm::ReceiveBuffer* buffer, const std::string&);
   void on_stats(const lcm::ReceiveBuffer* buffer, const std::string&);
   void on_ack(const lcm::ReceiveBuffer* buffer, const std::string&);
+  void on_packed(const lcm::ReceiveBuffer* buffer, const std::string&);
+  void on_contacts(const lcm::ReceiveBuffer* buffer, const std::string&);
+  void on_hits(const lcm::ReceiveBuffer* buffer, const std::string&);
 
   template <typename Message>
   std::int64_t post(Message& command, std::string_view suffix);
+  template <typename Message>
+  void publish(const Message& message, std::string_view suffix);
   void send_due();
   double time_limit() const;
   control_t make_control(std::int8_t verb) const;
@@ -148,6 +165,9 @@ class World {
   Outbox outbox_;
   std::optional<heartbeat_t> heartbeat_;
   std::optional<stats_t> stats_;
+  std::optional<hits_t> hits_;  ///< The newest answer to this client.
+  std::int64_t questions_ = 0;
+  Contacts contacts_;
   std::int64_t messages_malformed_ = 0;
 };
 

@@ -7,6 +7,8 @@
 namespace tumble::client {
 namespace {
 
+constexpr double kAskAgain = 0.05;  // [s] after which a lost answer is asked for again
+
 std::int64_t wall_clock() {
   using namespace std::chrono;
   return duration_cast<microseconds>(system_clock::now().time_since_epoch()).count();
@@ -118,6 +120,62 @@ Answer World::step(std::int64_t count) {
 
 Answer World::reset() {
   return send_and_wait(make_control(control_t::VERB_RESET));
+}
+
+Answer World::snapshot(const std::string& name) {
+  control_t command = make_control(control_t::VERB_SNAPSHOT);
+  command.name = name;
+  return send_and_wait(command);
+}
+
+Answer World::restore(const std::string& name) {
+  control_t command = make_control(control_t::VERB_RESTORE);
+  command.name = name;
+  return send_and_wait(command);
+}
+
+Answer World::advance(std::int64_t count) {
+  control_t command = make_control(control_t::VERB_STEP);
+  command.count = count;
+  const std::int64_t sequence = post(command, kControlSuffix);
+  const Answer answer = wait(sequence);
+  if (!answer.accepted()) return answer;
+  const std::int64_t end = answer.step + count;
+  const auto whole = [&] { return picture_.whole_step() >= end; };
+  std::int64_t last = -1;
+  auto moved = Outbox::Clock::now();
+  while (!spin_until(whole, kAskAgain)) {
+    if (picture_.step() != last) moved = Outbox::Clock::now();
+    last = picture_.step();
+    if (std::chrono::duration<double>(Outbox::Clock::now() - moved).count() > time_limit()) {
+      throw NoServer("the step was accepted, but the world stays at step " + std::to_string(last));
+    }
+    publish(command, kControlSuffix);  // answered again, and the whole state with it
+  }
+  return answer;
+}
+
+hits_t World::ask(query_t query) {
+  if (!heartbeat_) wait_for_server(time_limit());
+  query.utime = wall_clock();
+  query.client = outbox_.client();
+  query.sequence = ++questions_;
+  hits_.reset();
+  const auto answered = [&] { return hits_ && hits_->sequence == query.sequence; };
+  const auto end = Outbox::Clock::now() + options_.timing.limit;
+  do {
+    if (Outbox::Clock::now() >= end)
+      throw NoServer("no answer to a query on " + channel_name(name(), kHitsSuffix));
+    publish(query, kQuerySuffix);
+  } while (!spin_until(answered, kAskAgain));
+  return *hits_;
+}
+
+template <typename Message>
+void World::publish(const Message& message, std::string_view suffix) {
+  std::vector<std::uint8_t> bytes;
+  encode(message, bytes);
+  bus_->publish(channel_name(name(), suffix), bytes.data(), static_cast<unsigned>(bytes.size()));
 }
 
 }  // namespace tumble::client

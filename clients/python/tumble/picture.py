@@ -8,12 +8,13 @@ indexed by body id, so that a message of a thousand bodies is merged without a l
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Dict, Iterator, List, Optional, Tuple
+from typing import Any, Dict, Iterator, List, Optional, Set, Tuple, Union
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .messages import catalog_t, state_t
+from .messages import catalog_t, packed_t, state_t
+from .packed import GENERATIONS, unpack
 
 Array = NDArray[np.float64]
 SHAPE_NAMES = {
@@ -141,6 +142,10 @@ class Picture:
         self.session = session
         """0: nothing heard yet."""
         self.step, self.time, self.state_hash = -1, 0.0, 0
+        self.whole_step = -1
+        """Newest step of which a whole publication was heard, no message of it lost."""
+        self._publication = 0  # utime of the newest ...
+        self._chunks: Set[int] = set()  # ... and the numbers of its messages
         self.epoch, self.num_bodies = -1, -1
         self.descriptions: Dict[int, Description] = {}
         self._ids_by_name: Dict[str, int] = {}
@@ -158,25 +163,51 @@ class Picture:
             return False
         # A body that a newer epoch may have removed is not brought back by a message that was overtaken.
         may_create = message.catalog_epoch >= self.epoch
-        self._note_epoch(message.catalog_epoch, message.num_bodies)
-        if message.step >= self.step:
-            self.step, self.time, self.state_hash = message.step, message.time, message.state_hash
+        self._note_publication(message)
         if message.n == 0:
             return True
         ids, generations = np.array(message.id), np.array(message.generation)
         self._make_room(int(ids.max()) + 1)
         if may_create:
             self._create(ids, generations)
+        m = message
+        columns = (m.px, m.py, m.pz, m.qw, m.qx, m.qy, m.qz, m.vx, m.vy, m.vz, m.wx, m.wy, m.wz)
         known = self._generation[ids] == generations
+        self._place(message, ids, known, np.array(message.flags, np.int8).view(np.uint8), np.array(columns).T)
+        return True
+
+    def merge_packed(self, message: packed_t) -> bool:
+        """The same from packed_t. Only bodies that the catalogue has told: it knows their whole generation."""
+        if not self._adopt_session(message.session, message.utime):
+            return False
+        self._note_publication(message)
+        if message.n == 0:
+            return True
+        ids, generations, flags, motion = unpack(message)
+        self._make_room(int(ids.max()) + 1)
+        known = (self._generation[ids] >= 0) & (self._generation[ids] % GENERATIONS == generations)
+        self._place(message, ids, known, flags.astype(np.uint8), motion)
+        return True
+
+    def _note_publication(self, message: Union[state_t, packed_t]) -> None:
+        self._note_epoch(message.catalog_epoch, message.num_bodies)
+        if message.step >= self.step:
+            self.step, self.time, self.state_hash = message.step, message.time, message.state_hash
+        if message.utime > self._publication:
+            self._publication, self._chunks = message.utime, set()
+        if message.utime == self._publication:
+            self._chunks.add(message.chunk)
+            if len(self._chunks) == message.num_chunks:
+                self.whole_step = max(self.whole_step, message.step)
+
+    def _place(
+        self, message: Union[state_t, packed_t], ids: Any, known: Any, flags: Any, motion: Array
+    ) -> None:
+        """Overwrites the rows of those that are known, unless they are newer."""
         self._epoch[ids[known]] = np.maximum(self._epoch[ids[known]], message.catalog_epoch)
         use = known & (self._step[ids] <= message.step)
         rows = ids[use]
-        self._step[rows] = message.step
-        self._flags[rows] = np.array(message.flags, np.int8).view(np.uint8)[use]
-        m = message
-        columns = (m.px, m.py, m.pz, m.qw, m.qx, m.qy, m.qz, m.vx, m.vy, m.vz, m.wx, m.wy, m.wz)
-        self._motion[rows] = np.array(columns).T[use]
-        return True
+        self._step[rows], self._flags[rows], self._motion[rows] = message.step, flags[use], motion[use]
 
     def merge_catalog(self, message: catalog_t) -> bool:
         """False if the message was too old to say anything."""

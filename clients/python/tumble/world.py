@@ -5,140 +5,39 @@ A thread of the World receives and resends; every method may be called from any 
 
 from __future__ import annotations
 
+import contextlib
 import threading
 import time
 from concurrent.futures import Future
-from typing import Any, Callable, Iterator, List, Optional, Sequence, Tuple, Union
+from typing import Any, Callable, Dict, Iterator, List, Optional, Tuple, Union
 
 import lcm
 
+from .body import Body
 from .bus import open_bus, resolve_url
-from .errors import NoServer, TumbleError, UnknownBody
-from .messages import ack_t, catalog_t, control_t, force_command_t, heartbeat_t, state_t, stats_t
-from .outbox import Answer, Outbox
-from .picture import Array, BodyState, Description, Picture, State
+from .commands import TYPES, Vector, choose, floats, make_control, make_named, set_motion, set_shape
+from .contacts import ContactCollector, Contacts
+from .errors import NoAnswer, NoServer, Refused, TumbleError, UnknownBody
+from .messages import (
+    ack_t,
+    catalog_t,
+    contacts_t,
+    control_t,
+    force_command_t,
+    heartbeat_t,
+    hits_t,
+    packed_t,
+    query_t,
+    state_t,
+    stats_t,
+)
+from .outbox import Answer, Outbox, Status
+from .picture import BodyState, Description, Picture, State
+from .query import Queries
 
 PROTOCOL_VERSION = 1
 QUEUE_CAPACITY = 10000
 """Messages LCM keeps for us; its default of 30 is less than one burst of a large world."""
-
-Vector = Sequence[float]
-_FRAMES = {"world": force_command_t.FRAME_WORLD, "body": force_command_t.FRAME_BODY}
-_SHAPES = {
-    "sphere": catalog_t.SHAPE_SPHERE,
-    "capsule": catalog_t.SHAPE_CAPSULE,
-    "box": catalog_t.SHAPE_BOX,
-    "cylinder": catalog_t.SHAPE_CYLINDER,
-    "cone": catalog_t.SHAPE_CONE,
-    "ellipsoid": catalog_t.SHAPE_ELLIPSOID,
-}
-_NUM_LENGTHS = {"sphere": 1, "capsule": 2, "box": 3, "cylinder": 2, "cone": 2, "ellipsoid": 3}
-_TYPES = {"static": catalog_t.TYPE_STATIC, "dynamic": catalog_t.TYPE_DYNAMIC, "kinematic": catalog_t.TYPE_KINEMATIC}
-
-
-class Body:
-    """One body of a world. Properties are the newest the server told; commands wait for its answer.
-
-    `wait=False` returns at once with a concurrent.futures.Future of the Answer: for controllers.
-    """
-
-    def __init__(self, world: "World", description: Description) -> None:
-        self._world = world
-        self.description = description
-
-    @property
-    def name(self) -> str:
-        return self.description.name
-
-    @property
-    def mass(self) -> float:
-        """[kg]; 0 for static and kinematic bodies."""
-        return self.description.mass
-
-    @property
-    def state(self) -> BodyState:
-        return self._world._body_state(self.description)
-
-    @property
-    def position(self) -> Array:
-        """Centre of mass in the world frame [m]."""
-        return self.state.position
-
-    @property
-    def orientation(self) -> Array:
-        """(w, x, y, z), link axes to world."""
-        return self.state.orientation
-
-    @property
-    def velocity(self) -> Array:
-        """Of the centre of mass, world frame [m/s]."""
-        return self.state.velocity
-
-    @property
-    def angular_velocity(self) -> Array:
-        """World frame [rad/s]."""
-        return self.state.angular_velocity
-
-    @property
-    def resting(self) -> bool:
-        return self.state.resting
-
-    def push(
-        self,
-        force: Vector = (0, 0, 0),
-        seconds: float = 0.0,
-        at: Vector = (0, 0, 0),
-        torque: Vector = (0, 0, 0),
-        frame: str = "world",
-        start_step: int = 0,
-        wait: bool = True,
-    ) -> Any:
-        """Force [N] and torque [N m] in the axes of `frame` ("world" or "body"), for simulated `seconds`.
-
-        `seconds=0` is exactly one step. `at` is where the force acts: from the centre of mass, in the body's axes [m];
-        it moves with the body.
-        """
-        command = force_command_t()
-        command.body, command.generation = self.description.id, self.description.generation
-        command.force, command.torque = _floats("force", force, 3), _floats("torque", torque, 3)
-        command.point = _floats("at", at, 3)
-        command.frame = _choose("frame", frame, _FRAMES)
-        command.duration, command.start_step = float(seconds), start_step
-        return self._world._finish(self._world.send(command), wait)
-
-    def torque(self, torque: Vector, seconds: float = 0.0, frame: str = "world", wait: bool = True) -> Any:
-        """Torque [N m] in the axes of `frame`, for simulated `seconds`."""
-        return self.push(torque=torque, seconds=seconds, frame=frame, wait=wait)
-
-    def set(
-        self,
-        at: Vector,
-        orientation: Vector = (1, 0, 0, 0),
-        velocity: Vector = (0, 0, 0),
-        angular_velocity: Vector = (0, 0, 0),
-        wait: bool = True,
-    ) -> Any:
-        """Puts the body somewhere, with a velocity."""
-        command = self._control(control_t.VERB_SET_STATE)
-        _set_motion(command, at, orientation, velocity, angular_velocity)
-        return self._world._finish(self._world.send(command), wait)
-
-    def remove(self, wait: bool = True) -> Any:
-        """Takes the body out of the world."""
-        return self._world._finish(self._world.send(self._control(control_t.VERB_REMOVE)), wait)
-
-    def plot(self, on: bool = True, wait: bool = True) -> Any:
-        """Streams the body on <WORLD>_BODY_<id>, where lcm-spy draws charts of it; or stops that."""
-        verb = control_t.VERB_WATCH if on else control_t.VERB_UNWATCH
-        return self._world._finish(self._world.send(self._control(verb)), wait)
-
-    def _control(self, verb: int) -> control_t:
-        command = _make_control(verb)
-        command.body, command.generation = self.description.id, self.description.generation
-        return command
-
-    def __repr__(self) -> str:
-        return f"<Body {self.name!r} of {self._world.name}>"
 
 
 class World:
@@ -158,6 +57,13 @@ class World:
         self._outbox = Outbox(timeout)
         self._heartbeat: Optional[heartbeat_t] = None
         self._stats: Optional[stats_t] = None
+        self._contacts = ContactCollector()
+        self._questions = 0
+        self._hits: Dict[int, hits_t] = {}
+        self._callbacks: List[Callable[[State], object]] = []
+        self._called_back: Tuple[int, int] = (0, -1)
+        self.query = Queries(self)
+        """Rays, moved shapes, places, closest points."""
         self._closing = False
         self._changed = threading.Condition()
         self._subscriptions = [self._subscribe(*entry) for entry in self._handlers()]
@@ -178,6 +84,12 @@ class World:
             if description is None or not self._picture.is_placed(description.id):
                 raise UnknownBody(name, self.names)
             return Body(self, description)
+
+    def name_of(self, id: int) -> str:
+        """The name of the body with this index; "" if it is not known."""
+        with self._changed:
+            description = self._picture.descriptions.get(id)
+            return description.name if description else ""
 
     def __contains__(self, name: object) -> bool:
         with self._changed:
@@ -274,18 +186,13 @@ class World:
         (radius, length along z), of a "box" its three edges, of an "ellipsoid" its three half axes.
         `mass` [kg]; None: from a density of 1000 kg/m^3. `type`: "dynamic", "static" or "kinematic".
         """
-        command = _make_control(control_t.VERB_SPAWN)
-        command.name = name
-        command.shape_type, command.body_type = _choose("shape", shape, _SHAPES), _choose("type", type, _TYPES)
-        lengths = [float(size)] if isinstance(size, (int, float)) else [float(length) for length in size]
-        expected = _NUM_LENGTHS[shape]
-        if len(lengths) != expected:
-            raise ValueError(f"size: a {shape} has {expected} length(s), given were {len(lengths)}")
-        command.size = lengths + [0.0] * (3 - expected)
+        command = make_control(control_t.VERB_SPAWN)
+        command.name, command.body_type = name, choose("type", type, TYPES)
         command.mass = 0.0 if mass is None else float(mass)
-        _set_motion(command, at, orientation, velocity, angular_velocity)
+        set_motion(command, at, orientation, velocity, angular_velocity)
+        set_shape(command, shape, size, orientation)
         command.friction, command.restitution = float(friction), float(restitution)
-        command.color = (_floats("color", color, 3) + [1.0])
+        command.color = floats("color", color, 3) + [1.0]
         answer = self.send(command).result()
 
         def arrived() -> bool:
@@ -302,38 +209,101 @@ class World:
 
     def pause(self) -> Answer:
         """Stops simulated time; returns when the state at which it stands has arrived."""
-        answer = self.send(_make_control(control_t.VERB_PAUSE)).result()
+        answer = self.send(make_control(control_t.VERB_PAUSE)).result()
         self.wait_for(lambda: self._picture.step >= answer.step)
         return answer
 
     def resume(self) -> Answer:
         """Lets simulated time run."""
-        return self.send(_make_control(control_t.VERB_RESUME)).result()
+        return self.send(make_control(control_t.VERB_RESUME)).result()
 
-    def step(self, count: int = 1) -> Answer:
-        """Runs `count` steps at full speed, then pauses; returns when the new state has arrived."""
-        command = _make_control(control_t.VERB_STEP)
+    def step(self, count: int = 1) -> State:
+        """Runs `count` steps at full speed, then pauses; returns the whole state after them.
+
+        What the network lost is asked for again. NoServer if the world stands still for the time limit.
+        """
+        command = make_control(control_t.VERB_STEP)
         command.count = count
         answer = self.send(command).result()
-        end, last = answer.step + count, -1
-        while self._picture.step < end and self._picture.step != last:  # as long as there is progress
-            last = self._picture.step
-            self.wait_for(lambda: self._picture.step >= end)
-        if self._picture.step < end:
-            raise NoServer(f"step was accepted, but the world stays at step {last} instead of {end}")
-        return answer
+        end, last, deadline = answer.step + count, -1, 0.0
+        while True:
+            with self._changed:
+                if self._changed.wait_for(lambda: self._picture.whole_step >= end, Outbox.RESEND):
+                    return self._picture.snapshot()
+                if self._picture.step != last:
+                    last, deadline = self._picture.step, time.monotonic() + self.timeout
+            if time.monotonic() > deadline:
+                raise NoServer(f"step was accepted, but the world stays at step {last} instead of {end}")
+            self._bus.publish(self.name + "_CONTROL", command.encode())  # answered again, and the whole state with it
+
+    @contextlib.contextmanager
+    def lock_step(self) -> Iterator["World"]:
+        """For as long as the context lasts the client holds the clock: time passes in `step` alone."""
+        self.pause()
+        try:
+            yield self
+        finally:
+            self.resume()
+
+    def snapshot(self, name: str) -> Answer:
+        """Keeps the world as it is under a name, in the server; at most 16 of them."""
+        return self.send(make_named(control_t.VERB_SNAPSHOT, name)).result()
+
+    def restore(self, name: str) -> Answer:
+        """The world as it was at that snapshot, in a new session; returns when the new picture is complete."""
+        return self._go_back(make_named(control_t.VERB_RESTORE, name))
 
     def reset(self) -> Answer:
         """The world as it was at the start, in a new session; returns when the new picture is complete."""
+        return self._go_back(make_control(control_t.VERB_RESET))
+
+    def _go_back(self, command: control_t) -> Answer:
         before = self._picture.session
-        answer = self.send(_make_control(control_t.VERB_RESET)).result()
+        answer = self.send(command).result()
         self.wait_for(lambda: self._picture.session != before and self._picture.is_complete)
         return answer
 
     def stream_contacts(self, on: bool = True) -> Answer:
         """Streams the touching points on <WORLD>_CONTACTS, or stops that."""
         verb = control_t.VERB_CONTACTS_ON if on else control_t.VERB_CONTACTS_OFF
-        return self.send(_make_control(verb)).result()
+        return self.send(make_control(verb)).result()
+
+    def contacts(self) -> Contacts:
+        """The touching points of the newest step that the server has told; streams them from the first call on."""
+        if self._contacts.newest is None:
+            self.stream_contacts()
+        if not self.wait_for(lambda: self._contacts.newest is not None):
+            raise NoServer(f"no contacts on {self.name}_CONTACTS within {self.timeout} s")
+        assert self._contacts.newest is not None
+        return self._contacts.newest
+
+    def on_state(self, callback: Callable[[State], object]) -> Callable[[], None]:
+        """Calls `callback` with every new state, in this object's own thread; returns what ends that."""
+        with self._changed:
+            self._callbacks.append(callback)
+
+        def cancel() -> None:
+            with self._changed:
+                self._callbacks.remove(callback)
+
+        return cancel
+
+    def ask(self, query: query_t) -> hits_t:
+        """Puts a question (see Queries) until it is answered. Refused, NoAnswer."""
+        with self._changed:
+            self._questions += 1
+            query.client, query.sequence = self._outbox.client, self._questions
+            query.utime = time.time_ns() // 1000
+            query.session = self._picture.session or self.heartbeat.session
+        deadline = time.monotonic() + self.timeout
+        while time.monotonic() < deadline:
+            self._bus.publish(self.name + "_QUERY", query.encode())
+            if self.wait_for(lambda: query.sequence in self._hits, Outbox.RESEND):
+                answer = self._hits.pop(query.sequence)
+                if answer.status != Status.APPLIED:
+                    raise Refused(Answer(answer.status, -1, -1, -1, answer.detail))
+                return answer
+        raise NoAnswer(f"no answer to a query within {self.timeout:g} s; see: tumble doctor")
 
     def send(self, command: Union[force_command_t, control_t]) -> "Future[Answer]":
         """Numbers the command, sends it until it is answered; the future ends with an Answer, Refused or NoAnswer."""
@@ -376,11 +346,18 @@ class World:
     def _handlers(self) -> List[Tuple[str, Any, Callable[[Any], object]]]:
         return [
             ("_STATE", state_t, lambda message: self._picture.merge_state(message)),
+            ("_PACKED", packed_t, lambda message: self._picture.merge_packed(message)),
+            ("_CONTACTS", contacts_t, lambda message: self._contacts.merge(message)),
+            ("_HITS", hits_t, self._keep_hits),
             ("_CATALOG", catalog_t, lambda message: self._picture.merge_catalog(message)),
             ("_HEARTBEAT", heartbeat_t, lambda message: setattr(self, "_heartbeat", message)),
             ("_STATS", stats_t, lambda message: setattr(self, "_stats", message)),
             ("_ACK", ack_t, lambda message: self._outbox.receive(message)),
         ]
+
+    def _keep_hits(self, message: hits_t) -> None:
+        if message.client == self._outbox.client:
+            self._hits = {message.sequence: message}  # one question at a time
 
     def _subscribe(self, suffix: str, message_type: Any, use: Callable[[Any], object]) -> Any:
         def handle(_channel: str, data: bytes) -> None:
@@ -402,6 +379,14 @@ class World:
             self._bus.handle_timeout(slice_ms)
             with self._changed:
                 self._send_due()
+            self._call_back()
+
+    def _call_back(self) -> None:
+        if self._callbacks and self._called_back != self._newest():
+            self._called_back = self._newest()
+            state = self.state
+            for callback in list(self._callbacks):
+                callback(state)
 
     def _send_due(self) -> None:
         for channel, data in self._outbox.take_due(time.monotonic()):
@@ -428,30 +413,3 @@ class World:
     def __repr__(self) -> str:
         return f"<World {self.name} at {self.url}: {len(self)} bodies, step {self.step_count}>"
 
-
-def _make_control(verb: int) -> control_t:
-    command = control_t()
-    command.verb = verb
-    command.orientation = [1.0, 0.0, 0.0, 0.0]
-    return command
-
-
-def _set_motion(
-    command: control_t, at: Vector, orientation: Vector, velocity: Vector, angular_velocity: Vector
-) -> None:
-    command.position, command.orientation = _floats("at", at, 3), _floats("orientation", orientation, 4)
-    command.velocity = _floats("velocity", velocity, 3)
-    command.angular_velocity = _floats("angular_velocity", angular_velocity, 3)
-
-
-def _floats(field: str, values: Vector, size: int) -> List[float]:
-    numbers = [float(value) for value in values]
-    if len(numbers) != size:
-        raise ValueError(f"{field}: {size} numbers expected, given were {len(numbers)}")
-    return numbers
-
-
-def _choose(field: str, word: str, words: Any) -> int:
-    if word not in words:
-        raise ValueError(f'{field}: "{word}" is not one of {", ".join(words)}')
-    return int(words[word])

@@ -10,6 +10,7 @@
 #include <set>
 
 #include "net/outbox.h"
+#include "protocol/packed.h"
 #include "support/fake_clock.h"
 #include "tumble/contacts_t.hpp"
 
@@ -155,7 +156,7 @@ TEST_F(Publisher, LostMessagesAreHealedByTheNextRounds) {
 TEST_F(Publisher, OnlyWhatMovedIsSentBetweenRefreshes) {
   Scenery scenery(11 * 60);
   Receiver receiver;
-  publish(scenery, receiver);
+  for (int i = 0; i < 3; ++i) publish(scenery, receiver);  // the first, and twice more
   scenery.move(3);
   Receiver next;
   publish(scenery, next);
@@ -169,6 +170,60 @@ TEST_F(Publisher, AnEmptyWorldStillTellsTheStep) {
   const auto sent = publish(scenery, receiver);
   EXPECT_EQ(sent.at("T_STATE"), 1);
   EXPECT_EQ(sent.at("T_CATALOG"), 1);
+}
+
+TEST_F(Publisher, ALastChangeIsToldThreeTimes) {
+  Scenery scenery(2);
+  Receiver receiver;
+  publish(scenery, receiver);
+  for (int i = 0; i < 100; ++i) publish(scenery, receiver);
+  scenery.move(1);
+  std::vector<int> sent;
+  for (int i = 0; i < 4; ++i) {
+    receiver.x.clear();
+    publish(scenery, receiver);
+    sent.push_back(receiver.x.contains(1));
+  }
+  EXPECT_EQ(sent[0] + sent[1] + sent[2], 3);
+}
+
+TEST_F(Publisher, AWholeViewTellsEveryBody) {
+  Scenery scenery(100);
+  Receiver receiver;
+  for (int i = 0; i < 10; ++i) publish(scenery, receiver);
+  receiver.x.clear();
+  scenery.view().whole = true;
+  publish(scenery, receiver);
+  EXPECT_EQ(receiver.x.size(), 100u);
+}
+
+TEST(PackedPublisher, TellsEveryBodyIn25Bytes) {
+  constexpr std::uint32_t kBodies = 20'000;
+  Scenery scenery(kBodies);
+  for (std::uint32_t slot = 0; slot < kBodies; ++slot) {
+    scenery.view().bodies[slot].values = {0.01 * slot, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 2.0};
+  }
+  StatePublisher publisher("T", kNetworkPayload, Encoding::packed);
+  publisher.begin(scenery.view(), 0);
+  std::string channel;
+  std::vector<std::uint8_t> bytes;
+  std::map<std::int32_t, double> x;
+  std::size_t messages = 0, total = 0;
+  while (publisher.next(channel, bytes)) {
+    ASSERT_LE(bytes.size(), kNetworkPayload);
+    if (channel != "T_PACKED") continue;
+    packed_t message{};
+    ASSERT_EQ(decode(bytes, message), Malformed::none);
+    EXPECT_EQ(message.chunk, static_cast<int>(messages));
+    ++messages;
+    total += bytes.size();
+    state_t state;
+    unpack(message, state);
+    for (std::size_t i = 0; i < state.id.size(); ++i) x[state.id[i]] = state.px[i];
+  }
+  ASSERT_EQ(x.size(), kBodies);
+  for (const auto& [id, value] : x) EXPECT_NEAR(value, 0.01 * id, kPackedEdge / (1 << 21) * 1.01);
+  EXPECT_LT(static_cast<double>(total) / kBodies, 28.0);  // 27.7: 25 and a share of the messages' heads
 }
 
 TEST_F(Publisher, SpawnsAndRemovalsAreToldAtOnce) {
@@ -227,6 +282,50 @@ TEST_F(Publisher, WatchedBodiesAndContactsHaveChannels) {
   const auto sent = publish(scenery, receiver);
   EXPECT_EQ(sent.at("T_BODY_2"), 1);
   EXPECT_EQ(sent.at("T_CONTACTS"), 7);  // 15 of 88 bytes a message
+}
+
+/// Of 91 messages over 80 ms; what is urgent goes in between at once; who waits gets everything in bursts.
+TEST(OutboxPacing, PublicationsAreSpread) {
+  FakeClock clock;
+  std::vector<std::pair<std::string, std::int64_t>> sent;
+  Outbox outbox(
+      "T", kNetworkPayload, clock,
+      [&](const std::string& channel, Bytes) {
+        sent.emplace_back(channel, clock.now_ns());
+        return true;
+      },
+      Encoding::exact, 80'000'000);
+  Scenery scenery(1000);
+  const auto pump_all = [&] {
+    for (std::int64_t due = outbox.pump(); due != Outbox::kIdle; due = outbox.pump()) clock.sleep_until(due);
+  };
+  outbox.offer(std::make_unique<WorldView>(scenery.view()));
+  pump_all();  // with the whole catalogue behind
+  scenery.view().whole = true;
+  sent.clear();
+  std::int64_t start = clock.now_ns();
+  outbox.offer(std::make_unique<WorldView>(scenery.view()));
+  outbox.pump();
+  outbox.post("T_ACK", {1, 2, 3});
+  outbox.pump();
+  EXPECT_EQ(sent.back().first, "T_ACK");
+  EXPECT_EQ(sent.back().second, start);
+  pump_all();
+  std::vector<std::int64_t> states;
+  for (const auto& [channel, time] : sent) {
+    if (channel == "T_STATE") states.push_back(time - start);
+  }
+  ASSERT_EQ(states.size(), 91u);
+  for (std::size_t i = 0; i < states.size(); ++i) {
+    EXPECT_NEAR(static_cast<double>(states[i]), static_cast<double>(i) * 80e6 / 91.0, 1e6);
+  }
+  scenery.view().at_once = true;
+  start = clock.now_ns();
+  sent.clear();
+  outbox.offer(std::make_unique<WorldView>(scenery.view()));
+  pump_all();
+  EXPECT_LE(sent.back().second - start,
+            91 / Outbox::kBurstMessages * Outbox::kBurstNs + 10 * Outbox::kBurstNs);
 }
 
 /// Bursts: what a receiver with LCM's default queue of 30 messages can take.

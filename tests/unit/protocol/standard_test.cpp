@@ -63,7 +63,13 @@ TEST(Standard, FingerprintsAreThoseOfTheTypes) {
   expect_fingerprint<control_t>("control_t");
   expect_fingerprint<force_command_t>("force_command_t");
   expect_fingerprint<heartbeat_t>("heartbeat_t");
+  expect_fingerprint<hits_t>("hits_t");
+  expect_fingerprint<packed_t>("packed_t");
+  expect_fingerprint<pushes_t>("pushes_t");
+  expect_fingerprint<query_t>("query_t");
+  expect_fingerprint<recording_t>("recording_t");
   expect_fingerprint<state_t>("state_t");
+  expect_fingerprint<step_record_t>("step_record_t");
   expect_fingerprint<stats_t>("stats_t");
 }
 

@@ -13,6 +13,8 @@
 #include "support/fake_clock.h"
 #include "tumble/ack_t.hpp"
 #include "tumble/catalog_t.hpp"
+#include "tumble/hits_t.hpp"
+#include "tumble/pushes_t.hpp"
 #include "tumble/state_t.hpp"
 #include "tumble/stats_t.hpp"
 
@@ -40,7 +42,9 @@ World make_world() {
 
 class TumbleServer : public testing::Test {
  protected:
-  TumbleServer() { server_.emplace(make_world(), settings(), clock_, bus_, outbox_); }
+  TumbleServer() {
+    server_.emplace(Simulation(make_world(), random_session()), settings(), clock_, bus_, outbox_);
+  }
   void SetUp() override {
     bus_.subscribe("T_ACK", [this](Bytes bytes) {
       const ack_t m = read<ack_t>(bytes);
@@ -226,7 +230,7 @@ TEST_F(TumbleServer, PauseStandsStillAndStepDoesExactlySoMany) {
   send(c);
   tick(100);
   EXPECT_EQ(server_->world().step_count(), step + 7);
-  EXPECT_TRUE(server_->paused());
+  EXPECT_TRUE(server_->simulation().paused());
   EXPECT_EQ(states_.back().step, static_cast<std::int64_t>(step) + 7);
   EXPECT_TRUE(heartbeats_.back().paused);
   ask(make_control(control_t::VERB_RESUME));
@@ -235,7 +239,7 @@ TEST_F(TumbleServer, PauseStandsStillAndStepDoesExactlySoMany) {
 
 TEST_F(TumbleServer, ResetIsExactAndANewSession) {
   const std::uint64_t start = server_->world().state_hash();
-  const std::int64_t session = server_->session();
+  const std::int64_t session = server_->simulation().session();
   ask(make_control(control_t::VERB_PAUSE));
   ask(make_spawn("crate"));
   force_command_t late = make_force(1.0, 0.0);
@@ -248,17 +252,135 @@ TEST_F(TumbleServer, ResetIsExactAndANewSession) {
   tick(30);
   EXPECT_NE(momentum(), 0.0);
   EXPECT_EQ(ask(make_control(control_t::VERB_RESET)).status, Status::applied);
-  EXPECT_NE(server_->session(), session);
+  EXPECT_NE(server_->simulation().session(), session);
   tick(2);
   EXPECT_EQ(answers_[late.sequence].back().status, Status::cancelled);
-  EXPECT_EQ(states_.back().session, server_->session());
+  EXPECT_EQ(states_.back().session, server_->simulation().session());
   ask(make_control(control_t::VERB_RESET));
-  EXPECT_TRUE(server_->paused());
+  EXPECT_TRUE(server_->simulation().paused());
   force_command_t old = make_force(1.0, 0.0);
   old.session = session;
   EXPECT_EQ(ask(old).status, Status::wrong_session);
   EXPECT_EQ(names_.size(), 1u);
   EXPECT_EQ(server_->world().state_hash(), start);
+}
+
+TEST_F(TumbleServer, GoesBackToASnapshotInANewSession) {
+  force_command_t push = make_force(5.0, 1.0);
+  send(push);
+  tick(20);
+  control_t snapshot = make_control(control_t::VERB_SNAPSHOT);
+  snapshot.name = "a";
+  const Outcome kept = ask(snapshot);
+  EXPECT_EQ(kept.status, Status::applied);
+  tick(50);
+  const std::int64_t session = server_->simulation().session();
+  control_t restore = make_control(control_t::VERB_RESTORE);
+  restore.name = "b";
+  const Outcome unknown = ask(restore);
+  EXPECT_EQ(unknown.status, Status::invalid);
+  EXPECT_NE(unknown.detail.find("a"), std::string::npos);
+  restore = make_control(control_t::VERB_RESTORE);
+  restore.name = "a";
+  const Outcome restored = ask(restore);
+  EXPECT_EQ(restored.step, kept.step);
+  EXPECT_EQ(server_->simulation().session(), session + 1);
+  tick(300);  // the push goes on where it was
+  EXPECT_NEAR(momentum(), 5.0, 1e-11);
+  for (std::size_t i = 0; i <= kMaxSnapshots; ++i) {
+    snapshot = make_control(control_t::VERB_SNAPSHOT);
+    snapshot.name = std::to_string(i);
+    EXPECT_EQ(ask(snapshot).status, i + 1 < kMaxSnapshots ? Status::applied : Status::out_of_range) << i;
+  }
+  snapshot = make_control(control_t::VERB_SNAPSHOT);
+  EXPECT_EQ(ask(snapshot).status, Status::out_of_range) << "no name";
+}
+
+TEST_F(TumbleServer, ShowsThePushesThatAct) {
+  std::vector<pushes_t> heard;
+  bus_.subscribe("T_PUSHES", [&](Bytes bytes) { heard.push_back(read<pushes_t>(bytes)); });
+  tick(100);
+  EXPECT_TRUE(heard.empty()) << "nobody asked";
+  EXPECT_EQ(ask(make_control(control_t::VERB_PUSHES_ON)).status, Status::applied);
+  force_command_t push = make_force(7.0, 0.5);
+  push.point[1] = 0.25;
+  send(push);
+  tick(60);
+  ASSERT_FALSE(heard.empty());
+  ASSERT_EQ(heard.back().n, 1);
+  EXPECT_EQ(heard.back().fx[0], 7.0);
+  EXPECT_GT(heard.back().seconds_left[0], 0.2);
+  tick(120);
+  EXPECT_EQ(heard.back().n, 0) << "it is over";
+}
+
+TEST_F(TumbleServer, AnswersQuestions) {
+  std::vector<hits_t> heard;
+  bus_.subscribe("T_HITS", [&](Bytes bytes) { heard.push_back(read<hits_t>(bytes)); });
+  ask(make_spawn("crate"));  // a cube of 1 m, apart from the ball at the origin
+  query_t query{};
+  query.client = 3;
+  query.sequence = 9;
+  query.kind = query_t::KIND_RAY;
+  query.origin[2] = -10.0;
+  query.direction[2] = 2.0;
+  query.ignored = -1;
+  const auto put = [&] {
+    heard.clear();
+    send_to("T_QUERY", query);
+    tick(2);
+    return heard.empty() ? hits_t{} : heard.back();
+  };
+  hits_t answer = put();
+  EXPECT_EQ(answer.client, 3);
+  EXPECT_EQ(answer.sequence, 9);
+  ASSERT_EQ(answer.n, 1);
+  EXPECT_EQ(answer.body[0], 0);
+  EXPECT_EQ(answer.nz[0], -1.0);
+  EXPECT_NEAR(answer.distance[0] - 10.0, answer.pz[0], 1e-12);
+  query.ignored = 0;
+  answer = put();
+  ASSERT_EQ(answer.n, 1);
+  EXPECT_EQ(answer.body[0], 1) << "the crate above";
+  query.kind = query_t::KIND_RAY_ALL;
+  query.ignored = -1;
+  EXPECT_EQ(put().n, 2);
+  query.kind = query_t::KIND_OVERLAP;
+  query.shape_type = catalog_t::SHAPE_SPHERE;
+  query.size[0] = 0.1;
+  query.orientation[0] = 1.0;
+  query.origin[2] = 0.0;
+  answer = put();
+  ASSERT_EQ(answer.n, 1);
+  EXPECT_EQ(answer.body[0], 0);
+  query.kind = query_t::KIND_CLOSEST;
+  query.body_b = 1;
+  answer = put();
+  ASSERT_EQ(answer.n, 1);
+  EXPECT_GT(answer.distance[0], 0.5);
+  query.body_b = 77;
+  answer = put();
+  EXPECT_EQ(answer.status, static_cast<int>(Status::invalid));
+  EXPECT_NE(answer.detail.find("body_b"), std::string::npos);
+  query.kind = 99;
+  EXPECT_EQ(put().status, static_cast<int>(Status::invalid));
+  query.session = 5;
+  EXPECT_EQ(put().status, static_cast<int>(Status::wrong_session));
+}
+
+TEST_F(TumbleServer, TellsEverythingToWhoAsksAgainWhilePaused) {
+  ask(make_spawn("crate"));
+  ask(make_control(control_t::VERB_PAUSE));
+  control_t step = make_control(control_t::VERB_STEP);
+  step.count = 3;
+  ask(step);
+  tick(20);
+  states_.clear();
+  send(step);
+  tick(2);
+  ASSERT_FALSE(states_.empty());
+  EXPECT_EQ(states_.front().n, 2);
+  EXPECT_EQ(server_->simulation().now_step(), states_.front().step) << "and did no further step";
 }
 
 TEST_F(TumbleServer, WatchesBodiesUpToTheLimit) {
@@ -294,7 +416,7 @@ TEST_F(TumbleServer, KeepsItsRates) {
 TEST_F(TumbleServer, RunsInRealTimeAndStopsAfterItsSteps) {
   ServerSettings s = settings();
   s.steps = 512;
-  Server server(make_world(), s, clock_, bus_, outbox_);
+  Server server(Simulation(make_world(), random_session()), s, clock_, bus_, outbox_);
   const std::int64_t start = clock_.now_ns();
   const volatile std::sig_atomic_t stop = 0;
   server.run(stop);

@@ -1,0 +1,47 @@
+// Writes a run to a log from which it can be repeated to the bit: the scene, every command with the step at which it
+// acts, after each step the hash of the world, and at an interval a picture of it (catalogue, states, statistics) for
+// everyone who reads LCM logs. Commands are written before they are answered, so that nothing accepted is ever lost.
+#pragma once
+
+#include <string>
+
+#include "net/event_log.h"
+#include "net/state_publisher.h"
+#include "simulation.h"
+#include "step_checksum.h"
+#include "tumble/recording_t.hpp"
+
+namespace tumble {
+
+/// Everything throws std::system_error if the file can't take it.
+class Recorder {
+ public:
+  /// Goes on with a log whose events since the last step record are summed up in `checksum`. `head` stands in the log.
+  Recorder(EventLogWriter log, const recording_t& head, const StepChecksum& checksum);
+  /// Starts a log: writes `head`.
+  Recorder(EventLogWriter log, const recording_t& head);
+
+  /// `command` acts at `start_step` of `session`: a later step than now if it was accepted to wait, or now.
+  void note_command(const Command& command, std::int64_t start_step, std::int64_t session,
+                    std::int64_t utime);
+  void end_step(const Simulation& simulation, std::int64_t utime);
+  /// What was noted outlives the process from here on.
+  void flush() { log_.flush(); }
+
+ private:
+  template <typename Message>
+  void write(std::int64_t utime, const std::string& channel, const Message& message);
+  void write_picture(const Simulation& simulation, std::int64_t utime);
+
+  EventLogWriter log_;
+  std::string world_name_, force_channel_, control_channel_, step_channel_, stats_channel_;
+  std::int64_t picture_steps_;  // between two pictures
+  StepChecksum checksum_;
+  StatePublisher publisher_;
+  WorldView view_;
+  std::uint64_t catalog_model_ = 0;
+  std::int64_t catalog_epoch_ = 0;
+  std::vector<std::uint8_t> bytes_;
+};
+
+}  // namespace tumble

@@ -1,0 +1,189 @@
+"""A recorded run can be repeated to the bit, and goes on after any death with nothing accepted lost."""
+import random
+import re
+import shutil
+import time
+
+import pytest
+from log import Log
+from server import SCENES, Server, run_server
+from wire import APPLIED, QUEUED, Wire
+
+PUSH = (0.5, 0.0, 0.0)  # [N], for one step
+
+
+def replay(path):
+    return run_server("--replay", path)
+
+
+@pytest.fixture(name="recorded", scope="module")
+def record_run(tmp_path_factory):
+    """A log of a run with pushes, spawns, a removal, pauses, steps, a snapshot, its restoration and a reset."""
+    folder, wire = tmp_path_factory.mktemp("recorded"), Wire()
+    path = folder / "run.lcm"
+    with Server(folder / "server.log", SCENES / "pyramid.sdf", "--record", path) as server:
+        wire.next("HEARTBEAT", 10.0)
+        do_everything(wire)
+        assert server.stop() == 0
+    return path
+
+
+def do_everything(wire):
+    ids = wire.bodies()
+    names = sorted(name for name, (_, _, mass) in ids.items() if mass > 0)
+
+    def do(verb, **fields):
+        answer = wire.ask(wire.control(wire.verb(verb), **fields))
+        assert answer.status == APPLIED, answer.detail
+        return answer
+
+    for name in names[:20]:
+        wire.ask(wire.force(body=ids[name][0], generation=ids[name][1], force=(0.0, 0.0, 90.0), duration=0.1))
+    ball = do("SPAWN", name="late", body_type=1, shape_type=1, size=(0.4, 0.0, 0.0), position=(0.0, 0.0, 9.0))
+    later = wire.force(body=ball.body, generation=ball.generation, force=(5.0, 0.0, 0.0), duration=0.2,
+                       start_step=ball.applied_step + 200)
+    wire.send(later)
+    do("SNAPSHOT", name="before")
+    do("PAUSE")
+    do("STEP", count=300)
+    wire.next("HEARTBEAT", 20.0, lambda m: m.paused)
+    do("REMOVE", body=ball.body, generation=ball.generation)
+    do("STEP", count=20)
+    wire.next("HEARTBEAT", 20.0, lambda m: m.paused)
+    do("RESTORE", name="before")
+    do("STEP", count=100)
+    wire.next("HEARTBEAT", 20.0, lambda m: m.paused)
+    do("RESET")
+    do("RESUME")
+    step = wire.next("STATE").step
+    wire.next("STATE", 20.0, lambda m: m.step > step + 50)
+
+
+def test_a_recorded_run_comes_out_the_same(recorded):
+    log = Log(recorded)
+    sessions = sorted({record.session for record in log.steps})
+    assert [session - sessions[0] for session in sessions] == [0, 1, 2]
+    assert {"RECORDING", "STEP", "FORCE", "CONTROL", "STATE", "CATALOG", "STATS"} == set(log.channels)
+    done = replay(recorded)
+    assert done.returncode == 0, done.stderr
+    assert f"{len(log.steps)} steps" in done.stderr and "same" in done.stderr
+
+
+def flip(path, offset):
+    with open(path, "r+b") as file:
+        file.seek(offset)
+        byte = file.read(1)[0]
+        file.seek(offset)
+        file.write(bytes([byte ^ 1]))
+
+
+def test_a_damaged_log_is_read_up_to_the_damage(recorded, tmp_path):
+    """One bit of a command's force, one of an event's header."""
+    data = recorded.read_bytes()
+    command = data.index(b"TUMBLE_FORCE") + len("TUMBLE_FORCE") + 100
+    header = data.index(b"TUMBLE_STEP", len(data) // 2) - 28
+    for name, offset in (("command", command), ("header", header)):
+        path = tmp_path / f"{name}.lcm"
+        shutil.copy(recorded, path)
+        flip(path, offset)
+        done = replay(path)
+        assert done.returncode == 1, name
+        where = int(re.search(r"damaged at byte (\d+)", done.stderr).group(1))
+        assert offset - 1000 < where <= offset + 1000, (name, offset, done.stderr)
+        assert int(re.search(r"(\d+) steps", done.stderr).group(1)) < len(Log(recorded).steps)
+        resumed = run_server("--resume", path, "--steps", 1)
+        assert resumed.returncode == 1 and f"head -c {where}" in resumed.stderr
+        assert path.stat().st_size == len(data), "nothing was overwritten"
+
+
+def test_a_cut_log_is_read_to_its_last_step(recorded, tmp_path):
+    data = recorded.read_bytes()
+    for length in (len(data) - 20, len(data) // 3):
+        path = tmp_path / f"{length}.lcm"
+        path.write_bytes(data[:length])
+        done = replay(path)
+        assert done.returncode == 0, done.stderr
+        steps = int(re.search(r"(\d+) steps", done.stderr).group(1))
+        resumed = run_server("--resume", path, "--steps", 10, "--fast")
+        assert resumed.returncode == 0, resumed.stderr
+        again = replay(path)
+        assert again.returncode == 0 and f"{steps + 10} steps" in again.stderr
+
+
+def test_another_step_is_named(recorded, tmp_path):
+    """A log whose recorded hashes belong to another run."""
+    path = tmp_path / "other.lcm"
+    data = recorded.read_bytes()
+    at = data.index(b"<gravity>") + len("<gravity>")
+    end = data.index(b"<", at)
+    other = b"0 0 -9.5".ljust(end - at)
+    assert len(other) == end - at
+    path.write_bytes(data[:at] + other + data[end:])
+    done = replay(path)
+    assert done.returncode == 1 and "step 1 of session" in done.stderr and "first that differs" in done.stderr
+
+
+def test_what_is_no_recording_is_refused(tmp_path):
+    path = tmp_path / "x.lcm"
+    path.write_bytes(b"not a log")
+    done = replay(path)
+    assert done.returncode == 2 and "x.lcm" in done.stderr and "not a log" in done.stderr
+    done = run_server("--record", path, "--steps", 1, "--demo", "cradle")
+    assert done.returncode == 1 and "exists" in done.stderr and path.read_bytes() == b"not a log"
+
+
+class Pusher:
+    """Pushes a body; like the client libraries it sends every push until that is answered."""
+
+    def __init__(self, wire):
+        self.wire, self.read = wire, 0
+        self.sent, self.waiting = 0, {}
+
+    def push(self, body, start_step):
+        command = self.wire.force(body=body[0], generation=body[1], force=PUSH, start_step=start_step)
+        self.waiting[command.sequence] = command
+        self.sent += 1
+        self.wire.send(command)
+
+    def repeat(self, seconds):
+        """Sends again what is not answered, and hears what is."""
+        for command in self.waiting.values():
+            self.wire.send(command)
+        self.wire.listen(seconds)
+        for answers in self.wire.heard["ACK"][self.read:]:
+            for i in range(answers.n):
+                if answers.status[i] == APPLIED:
+                    self.waiting.pop(answers.sequence[i], None)
+                else:
+                    assert answers.status[i] == QUEUED, answers.detail[i]
+        self.read = len(self.wire.heard["ACK"])
+
+
+def test_fifty_deaths_lose_nothing(start, wire, tmp_path):
+    """Killed at 50 random moments while a client pushes: at the end every push acted once, and the bits are those of a
+    run that never died."""
+    generator, pusher, path = random.Random(3), Pusher(wire), tmp_path / "run.lcm"
+    server = start(SCENES / "free.sdf", "--record", path)
+    wire.next("HEARTBEAT", 20.0)
+    index, generation, mass = wire.bodies()["ball"]
+    for _ in range(50):
+        deadline = time.monotonic() + generator.uniform(0.0, 0.15)
+        while time.monotonic() < deadline:
+            late = generator.randrange(99) if generator.random() < 0.5 else -wire.heard["HEARTBEAT"][-1].step
+            pusher.push((index, generation), wire.heard["HEARTBEAT"][-1].step + late)
+            pusher.repeat(0.005)
+        server.process.kill()
+        server.process.wait()
+        server = start("--resume", path)
+        wire.next("HEARTBEAT", 20.0)
+    wire.wait(lambda: pusher.repeat(0.05) or not pusher.waiting, 20.0, "the last answer")
+    wire.listen(0.6)
+    assert server.stop() == 0
+    log = Log(path)
+    assert len({(c.client, c.sequence) for c in log.commands}) == pusher.sent > 50
+    done = run_server("--replay", path)
+    assert done.returncode == 0, done.stderr
+    assert f"{len(log.steps)} steps with {pusher.sent} commands came out the same" in done.stderr
+    last = next(m for m in reversed(wire.heard["STATE"]) if index in m.id[:m.n])
+    speed = last.vx[list(last.id).index(index)]
+    assert speed * mass == pytest.approx(pusher.sent * PUSH[0] * log.head.dt, rel=1e-9)

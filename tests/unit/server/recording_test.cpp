@@ -1,0 +1,168 @@
+// A recorded run, read again in the same process: same bits, same answers, and what waited waits again.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "recorder.h"
+#include "replay.h"
+#include "scene/demo.h"
+#include "scene/sdf.h"
+
+namespace tumble {
+namespace {
+
+constexpr std::int64_t kSession = 65537;
+
+class Recording : public testing::Test {
+ protected:
+  Recording() : simulation_(build_world(scene()), kSession) {
+    std::filesystem::remove(path_);
+    recording_t head{};
+    head.session = kSession;
+    head.world = "T";
+    head.dt = scene().options.time_step;
+    head.interval = 0.1;
+    head.scene = write_sdf(scene());
+    head.state_hash = static_cast<std::int64_t>(simulation_.world().state_hash());
+    recorder_.emplace(EventLogWriter(path_), head);
+  }
+  ~Recording() override { std::filesystem::remove(path_); }
+
+  static Scene scene() { return read_sdf_text(std::string(demo_text("cradle")), "cradle", ".").scene; }
+  void step(int count) {
+    for (int i = 0; i < count; ++i) {
+      simulation_.step();
+      recorder_->end_step(simulation_, 1000 * ++utime_);
+    }
+  }
+  static Command make_push(std::int64_t sequence, std::uint32_t body) {
+    force_command_t push{};
+    push.client = 7;
+    push.sequence = sequence;
+    push.body = static_cast<std::int32_t>(body);
+    push.generation = 1;
+    push.force[0] = 0.25;
+    push.duration = 0.02;
+    return {7, sequence, 0, 0, push};
+  }
+  static Command make_control(std::int64_t sequence, std::int8_t verb, const std::string& name = "") {
+    control_t control{};
+    control.client = 7;
+    control.sequence = sequence;
+    control.verb = verb;
+    control.count = 1;
+    control.name = name;
+    return {7, sequence, 0, 0, control};
+  }
+  Outcome apply(const Command& command) {
+    recorder_->note_command(command, simulation_.now_step(), simulation_.session(), 1000 * utime_);
+    return simulation_.apply(command);
+  }
+  Replay replay() {
+    recorder_->flush();
+    Replay replay(path_);
+    const volatile std::sig_atomic_t stop = 0;
+    replay.run({}, stop);
+    return replay;
+  }
+  std::uint32_t moving_body() const {
+    std::uint32_t slot = 0;
+    while (simulation_.world().body(slot).type != BodyType::dynamic) ++slot;
+    return slot;
+  }
+
+  std::string path_ = testing::TempDir() + "recording_" + std::to_string(::getpid()) + ".lcm";
+  Simulation simulation_;
+  std::optional<Recorder> recorder_;
+  std::int64_t utime_ = 0;
+};
+
+TEST_F(Recording, ComesOutTheSame) {
+  step(20);
+  EXPECT_EQ(apply(make_push(1, moving_body())).status, Status::applied);
+  EXPECT_EQ(apply(make_push(2, 999)).status, Status::unknown_body);
+  step(20);
+  EXPECT_EQ(apply(make_control(3, control_t::VERB_SNAPSHOT, "a")).status, Status::applied);
+  step(20);
+  EXPECT_EQ(apply(make_control(4, control_t::VERB_RESTORE, "a")).status, Status::applied);
+  step(20);
+  EXPECT_EQ(apply(make_control(5, control_t::VERB_RESTORE, "b")).status, Status::invalid);
+  EXPECT_EQ(apply(make_control(6, control_t::VERB_RESET)).status, Status::applied);
+  step(20);
+  EXPECT_EQ(apply(make_control(7, control_t::VERB_PAUSE)).status, Status::applied);
+  Replay again = replay();
+  EXPECT_FALSE(again.difference());
+  EXPECT_FALSE(again.damage());
+  EXPECT_EQ(again.steps(), 100);
+  EXPECT_EQ(again.commands(), 7);
+  EXPECT_EQ(again.simulation().world().state_hash(), simulation_.world().state_hash());
+  EXPECT_EQ(again.simulation().session(), kSession + 2);
+  EXPECT_TRUE(again.simulation().paused());
+}
+
+TEST_F(Recording, GivesBackAnswersAndWhatWaited) {
+  step(5);
+  apply(make_push(1, moving_body()));
+  recorder_->note_command(make_push(2, moving_body()), 40, kSession, 0);  // accepted to wait
+  step(5);
+  Replay again = replay();
+  CommandInbox& inbox = again.inbox();
+  EXPECT_EQ(inbox.pending(), 1u);
+  inbox.set_now(kSession, 10);
+  for (const std::int64_t sequence : {1, 2}) {
+    std::vector<std::uint8_t> bytes;
+    encode(std::get<force_command_t>(make_push(sequence, moving_body()).content), bytes);
+    inbox.receive_force(bytes);
+  }
+  const std::vector<Acknowledgement> answers = inbox.take_answers();
+  ASSERT_EQ(answers.size(), 2u);
+  EXPECT_EQ(answers[0].outcome.status, Status::applied);
+  EXPECT_EQ(answers[0].outcome.step, 5);
+  EXPECT_EQ(answers[1].outcome.status, Status::queued);
+  EXPECT_EQ(answers[1].outcome.step, 40);
+  EXPECT_EQ(inbox.counters().repeated, 2u);
+}
+
+TEST_F(Recording, NamesTheFirstStepThatDiffers) {
+  step(30);
+  simulation_.apply(make_push(1, moving_body()));  // not recorded
+  step(30);
+  const Replay again = replay();
+  ASSERT_TRUE(again.difference());
+  EXPECT_EQ(again.difference()->step, 31);
+  EXPECT_EQ(again.steps(), 30);
+}
+
+TEST_F(Recording, GoesOnAfterACutAtAnyByte) {
+  step(3);
+  apply(make_push(1, moving_body()));
+  step(2);
+  recorder_->flush();
+  std::ifstream file(path_, std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+  const volatile std::sig_atomic_t stop = 0;
+  for (std::size_t length = bytes.size() - 600; length < bytes.size(); length += 7) {  // the last steps
+    std::ofstream(path_, std::ios::binary) << bytes.substr(0, length);
+    Replay cut(path_);
+    cut.run({}, stop);
+    EXPECT_FALSE(cut.difference());
+    EXPECT_TRUE(!cut.damage() || cut.damage()->cut) << cut.damage()->what;
+    Recorder goes_on(EventLogWriter(path_, cut.log_size(), cut.log_events()), cut.head(), cut.checksum());
+    while (cut.simulation().now_step() < 8) {
+      cut.simulation().step();
+      goes_on.end_step(cut.simulation(), 0);
+    }
+    goes_on.flush();
+    Replay again(path_);
+    again.run({}, stop);
+    EXPECT_FALSE(again.difference() || again.damage()) << length;
+    EXPECT_EQ(again.simulation().now_step(), 8);
+  }
+}
+
+}  // namespace
+}  // namespace tumble

@@ -84,9 +84,9 @@ inline constexpr std::int64_t kSequenceWindow = 1024;
 inline constexpr double kDefaultPublishRate = 60.0;
 inline constexpr double kStatsRate = 10.0;
 inline constexpr double kHeartbeatRate = 2.0;
-inline constexpr double kContactsRate = 20.0;  ///< at most; of pushes, too
-inline constexpr double kRefreshPeriod = 0.5;  ///< [s] in which every body is sent once, changed or not
-inline constexpr double kCatalogPeriod = 1.0;  ///< [s] in which the whole catalogue is sent once
+inline constexpr double kContactsRate = 20.0;   ///< at most; of pushes, too
+inline constexpr double kRefreshPeriod = 0.5;   ///< [s] in which every body is sent once, changed or not
+inline constexpr double kCatalogPeriod = 0.75;  ///< [s] in which the whole catalogue is sent once
 
 /// What became of a command: ack_t.status.
 enum class Status : std::int8_t {

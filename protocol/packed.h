@@ -7,7 +7,7 @@
 //               s = 1/sqrt(2)
 //   3 x 13  velocity, 3 x 13  angular velocity: sign, 5 bits of exponent (offset 15), 7 of fraction, as IEEE 754 would
 //
-// Bounds of the errors: position edge / 2^21 a component; orientation 3e-4 rad; velocities 2^-8 of each component, below
+// Bounds of the errors: position edge / 2^21 a component; orientation 6e-4 rad (2 sqrt 12 / (8191 sqrt 2)); velocities 2^-8 of each component, below
 // 2^-14 (m/s, rad/s) 2^-22; beyond 131 000 they are cut to that.
 #pragma once
 

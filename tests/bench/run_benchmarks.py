@@ -3,7 +3,7 @@
 
     run_benchmarks.py BUILD [NAME...]     all programs bench_*, or those named (`step` or `bench_step`)
 
-Beside bench_NAME a program NAME_accuracy may print a Markdown table of its own; its first argument is the share of its
+`stream` is stream.py, run in a network namespace of its own. Beside bench_NAME a program NAME_accuracy may print a Markdown table of its own; its first argument is the share of its
 full size to run, TUMBLE_SHARE or 0.001.
 """
 import json
@@ -46,6 +46,14 @@ def own_table(program):
     return subprocess.run([program, share], check=True, stdout=subprocess.PIPE, text=True).stdout
 
 
+def stream_table(build):
+    """What stream.py says."""
+    print("running stream.py", file=sys.stderr)
+    root = HERE.parents[1]
+    command = [root / "tests/network/in_namespace", root / ".venv/bin/python", HERE / "stream.py", build]
+    return subprocess.run(command, check=True, stdout=subprocess.PIPE, text=True).stdout
+
+
 def first_line(*command):
     return subprocess.run(command, check=True, capture_output=True, text=True).stdout.splitlines()[0]
 
@@ -69,7 +77,8 @@ def main():
     programs = sorted(path for path in (build / "tests/bench").glob("bench_*") if os.access(path, os.X_OK))
     programs = [path for path in programs if path.is_file()
                 and (not wanted or path.name.removeprefix("bench_") in wanted)]
-    if not programs or wanted - {path.name.removeprefix("bench_") for path in programs}:
+    known = {path.name.removeprefix("bench_") for path in programs} | {"stream"}
+    if wanted - known or not (programs or "stream" in wanted):
         sys.exit(f"no such benchmark: {' '.join(sorted(wanted)) or 'none is built'}")
     sections = []
     for path in programs:
@@ -77,6 +86,8 @@ def main():
         accuracy = path.with_name(path.name.removeprefix("bench_") + "_accuracy")
         if accuracy.is_file():
             sections.append(f"## {accuracy.name}\n{own_table(accuracy)}")
+    if not wanted or "stream" in wanted:
+        sections.append(f"## stream\n{stream_table(build)}")
     text = "\n".join(["# Benchmarks", "Written by `./run bench`; a counter's unit is part of its name.", "",
                       *machine(build), "", *sections, ""])
     print(text)

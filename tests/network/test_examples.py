@@ -24,7 +24,8 @@ def run_example(name, *arguments):
 
 
 def test_all_examples_are_tested():
-    assert {path.name for path in EXAMPLES.glob("*.py")} == {"hover.py", "push.py", "watch.py"}
+    assert {path.name for path in EXAMPLES.glob("*.py")} == {
+        "balance.py", "energy.py", "hover.py", "pick.py", "push.py", "watch.py"}
 
 
 def test_push(free_bodies):
@@ -44,3 +45,25 @@ def test_watch(ball):
         script.send_signal(signal.SIGINT)
         assert script.wait(10) == 0
     assert "bodies in TUMBLE" in lines[0] and "ball" in lines[2]
+
+
+def test_pick(ball):
+    said = run_example("pick.py", "1.5", "3")
+    assert "picked ball" in said
+    assert float(re.search(r"hangs at ([-0-9.]+) m", said).group(1)) == pytest.approx(1.5, abs=0.05)
+
+
+def test_balance(ball):
+    """Without the controller the rod would lie after a second; and lock-step ends with time running again."""
+    assert float(re.search(r"leans ([-0-9.]+) degrees", run_example("balance.py", "3")).group(1)) < 1.0
+
+
+def test_energy(start, wire, tmp_path):
+    """Of a recording; the picture is one."""
+    log, picture = tmp_path / "run.lcm", tmp_path / "energy.png"
+    server = start(SCENES / "ball.sdf", "--record", log)
+    wire.next("STATE", 10.0, lambda m: m.step > 300)
+    assert server.stop() == 0
+    said = run_example("energy.py", str(log), str(picture))
+    assert int(re.match(r"(\d+) points", said).group(1)) > 10
+    assert picture.read_bytes().startswith(b"\x89PNG") and picture.stat().st_size > 10_000

@@ -5,6 +5,7 @@ import time
 
 import pytest
 from link import Far
+from log import Truth
 from server import ROOT, SCENES
 from tumble import World
 
@@ -38,15 +39,22 @@ def test_commands_act_once_each(relayed, start):
         assert ball.velocity[1] * ball.mass == pytest.approx(number * world.heartbeat.dt, rel=1e-12)
 
 
-def test_lock_step_holds(relayed, start):
-    """Each step is answered with the whole state after it, whatever was lost; time never runs by itself."""
-    start("--demo", "pyramid", wrapper=relayed.far).wait_for_output("TUMBLE_STATE", 20.0)
+def test_lock_step_holds(relayed, start, tmp_path):
+    """Each step is answered with the whole state after it, to the bit; time never runs by itself."""
+    path = tmp_path / "run.lcm"
+    server = start("--demo", "pyramid", "--record", path, "--record-interval", "1e-6", wrapper=relayed.far)
+    server.wait_for_output("TUMBLE_STATE", 20.0)
+    states = []
     with World(timeout=20.0) as world, world.lock_step():
         step = world.step_count
         for _ in range(10):
-            state = world.step(3)
+            states.append(world.step(3))
             step += 3
-            moving = ~state.resting & (state.steps > 0)
-            assert state.step == step and set(state.steps[moving].tolist()) <= {step}
+            assert states[-1].step == step
         time.sleep(0.3)
         assert world.step_count == step
+    assert server.stop() == 0
+    history = Truth(path)
+    for state in states:
+        for index, position in zip(state.ids.tolist(), state.positions.tolist()):
+            assert tuple(position) == history.at(index, state.step)

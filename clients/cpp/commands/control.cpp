@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "commands/command.h"
+#include "commands/terminal.h"
 
 namespace tumble::client {
 namespace {
@@ -19,24 +20,19 @@ void add_plain(CLI::App& app, const Globals& globals, Action& action, const char
   });
 }
 
-/// Returns when the steps are done, so that scripts can go on with the new state.
+/// Returns when the steps are done, so that scripts can go on with the new state. Tells people how far it is.
 int step(const Globals& globals, std::int64_t count) {
   World world(globals.world_options());
-  const Answer answer = world.step(count);
-  if (!answer.accepted()) return print_answer(globals, "step", answer);
-  const std::int64_t end = answer.step + count;
-  std::int64_t last = -1;
-  // However long the steps take, as long as there is progress.
-  while (world.picture().step() < end && world.picture().step() != last) {
-    last = world.picture().step();
-    world.spin_until([&] { return world.picture().step() >= end; }, globals.timeout);
-  }
-  if (world.picture().step() < end) {
-    fmt::print(stderr, "tumble: step: accepted, but the world stays at step {} instead of {}\n",
-               world.picture().step(), end);
-    return kRefused;
-  }
-  if (globals.json) return print_answer(globals, "step", answer);
+  const bool draws = get_terminal_size().width > 0;
+  bool drawn = false;
+  const Answer answer = world.advance(count, [&](std::int64_t done) {
+    if (draws)
+      fmt::print(stderr, "\r{} of {} steps ({:.0f} %)\033[K", done, count,
+                 100.0 * static_cast<double>(done) / static_cast<double>(count));
+    drawn = draws;
+  });
+  if (drawn) fmt::print(stderr, "\r\033[K");
+  if (!answer.accepted() || globals.json) return print_answer(globals, "step", answer);
   fmt::print("step: now at step {}, {:.6f} s\n", world.picture().step(), world.picture().time());
   return kDone;
 }

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <filesystem>
+#include <iterator>
 #include <map>
 #include <nlohmann/json.hpp>
 
@@ -12,6 +14,8 @@
 
 namespace tumble::client {
 namespace {
+
+constexpr const char* kVirtual[] = {"docker", "br-", "veth", "virbr", "vmnet", "tun", "tap", "wg"};
 
 /// Two heartbeats of every server fit in, so that a server that just ended is not counted as a second one [s].
 constexpr double kListenTime = 1.3;
@@ -68,8 +72,28 @@ Finding check_network(const BusAddress& bus, const BusReport& report) {
           ""};
 }
 
+bool in_container() {
+  return std::filesystem::exists("/.dockerenv") || std::filesystem::exists("/run/.containerenv");
+}
+
+/// Interfaces that lead to containers, virtual machines or tunnels, by the names their makers give them.
+bool is_virtual(const std::string& interface) {
+  const auto starts = [&](const char* prefix) { return interface.starts_with(prefix); };
+  return std::any_of(std::begin(kVirtual), std::end(kVirtual), starts);
+}
+
 Finding check_reach(const BusAddress& bus, const BusReport& report) {
+  if (bus.ttl == 0 && in_container()) {
+    return {Verdict::warning, "reach", "this container only: with ttl=0 in the URL nothing leaves it",
+            fmt::format("export LCM_DEFAULT_URL='udpm://{}:{}?ttl=1'   # in every container of the network",
+                        bus.group, bus.port)};
+  }
   if (bus.ttl == 0) return {Verdict::good, "reach", "this host only (ttl=0 in the URL)", ""};
+  if (is_virtual(report.interface)) {
+    return {Verdict::warning, "reach",
+            fmt::format("ttl={}, but the route leads to {}, which looks virtual", bus.ttl, report.interface),
+            as_root("ip route replace 224.0.0.0/4 dev INTERFACE") + "   # one of: ip -br link"};
+  }
   if (report.interface == "lo") {
     return {Verdict::warning, "reach", fmt::format("ttl={}, but the route stays on this host (lo)", bus.ttl),
             as_root("ip route del 224.0.0.0/4 dev lo") + "   # then the default route carries multicast"};
@@ -101,6 +125,11 @@ Finding describe_server(const Server& server) {
           ""};
 }
 
+bool is_served(const std::string& world, const Traffic& traffic) {
+  return std::any_of(traffic.servers.begin(), traffic.servers.end(),
+                     [&](const auto& entry) { return entry.second.last.world == world; });
+}
+
 void check_servers(const Globals& globals, const Traffic& traffic, std::vector<Finding>& findings) {
   std::map<std::string, std::vector<const Server*>> by_world;
   for (const auto& [key, server] : traffic.servers) {
@@ -115,9 +144,7 @@ void check_servers(const Globals& globals, const Traffic& traffic, std::vector<F
          fmt::format("{} servers share the name {}: every client sees a mixture", servers.size(), world),
          fmt::format("kill {}   # on {}; or start it with --world {}_2", later.pid, later.host, world)});
   }
-  const bool heard = std::any_of(traffic.servers.begin(), traffic.servers.end(),
-                                 [&](const auto& entry) { return entry.second.last.world == globals.world; });
-  if (!heard) {
+  if (!is_served(globals.world, traffic)) {
     const std::string other = traffic.servers.empty() ? "" : " (but the above)";
     findings.push_back({Verdict::fault, "server",
                         fmt::format("no server for world {}{}", globals.world, other),
@@ -125,6 +152,25 @@ void check_servers(const Globals& globals, const Traffic& traffic, std::vector<F
                             ? "tumble-server --demo pile"
                             : fmt::format("tumble-server --demo pile --world {}", globals.world)});
   }
+}
+
+/// Does what is sent reach the server, and its answer come back? Hearing it shows one direction only.
+Finding check_answer(const Globals& globals) {
+  World world(globals.world_options());
+  query_t query{};
+  query.kind = query_t::KIND_BOX;
+  query.ignored = -1;
+  const auto start = std::chrono::steady_clock::now();
+  try {
+    world.ask(query);
+  } catch (const NoServer&) {
+    return {
+        Verdict::fault, "answer",
+        fmt::format("the server of {} is heard, but answers nothing: commands don't reach it", globals.world),
+        "tumble doctor   # on the server's machine: a firewall there, or a route that leads elsewhere"};
+  }
+  const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
+  return {Verdict::good, "answer", fmt::format("a question was answered after {:.1f} ms", took.count()), ""};
 }
 
 void print_findings(const std::vector<Finding>& findings) {
@@ -166,6 +212,7 @@ int examine(const Globals& globals, bool network_only) {
                                         static_cast<double>(traffic.bytes) / kListenTime / 1e3),
                             ""});
         check_servers(globals, traffic, findings);
+        if (is_served(globals.world, traffic)) findings.push_back(check_answer(globals));
       }
     }
   }

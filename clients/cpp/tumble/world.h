@@ -120,8 +120,9 @@ class World {
   Answer snapshot(const std::string& name);
   Answer restore(const std::string& name);
   /// Lock-step: runs `count` steps and returns when the whole state after them is here, asking again for what the
-  /// network lost. Throws NoServer if the world stands still for the time limit.
-  Answer advance(std::int64_t count = 1);
+  /// network lost. `progress` hears now and then how many steps are done. Throws NoServer if the world stands still
+  /// for the time limit.
+  Answer advance(std::int64_t count = 1, const std::function<void(std::int64_t)>& progress = {});
 
   /// A question to the world, see query_t; asked until it is answered. Throws NoServer.
   hits_t ask(query_t query);

@@ -134,7 +134,7 @@ Answer World::restore(const std::string& name) {
   return send_and_wait(command);
 }
 
-Answer World::advance(std::int64_t count) {
+Answer World::advance(std::int64_t count, const std::function<void(std::int64_t)>& progress) {
   control_t command = make_control(control_t::VERB_STEP);
   command.count = count;
   const std::int64_t sequence = post(command, kControlSuffix);
@@ -147,6 +147,7 @@ Answer World::advance(std::int64_t count) {
   while (!spin_until(whole, kAskAgain)) {
     if (picture_.step() != last) moved = Outbox::Clock::now();
     last = picture_.step();
+    if (progress) progress(last - answer.step);
     if (std::chrono::duration<double>(Outbox::Clock::now() - moved).count() > time_limit()) {
       throw NoServer("the step was accepted, but the world stays at step " + std::to_string(last));
     }

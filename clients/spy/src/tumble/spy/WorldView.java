@@ -1,5 +1,5 @@
-// Draws the bodies from the side or from above, as wire frames; hulls as points. Drag turns, wheel zooms, right drag
-// moves. World frame: z up.
+// Draws the bodies as wire frames to scale, hulls as points; contacts in red, with their impulses; pushes as blue
+// arrows. Drag turns, wheel zooms, right drag moves. World frame: z up.
 package tumble.spy;
 
 import java.awt.BasicStroke;
@@ -19,12 +19,19 @@ import tumble.state_t;
 final class WorldView extends JPanel {
     private static final int RING = 24; // corners of a circle
     private static final int MAX_NAMES = 40; // more would cover each other
+    private static final int ARROW = 60; // pixels of the longest arrow of a kind
+    private static final Color CONTACT = new Color(0xc0392b), PUSH = new Color(0x2456a8);
     private final Picture picture;
-    private double azimuth = 0.6, elevation = 0.35, pixelsPerMetre, centreX, centreY;
+    private final Markers markers;
+    private final String title;
+    private double azimuth = -Math.PI / 2, elevation, pixelsPerMetre, centreX, centreY;
     private int lastX, lastY;
 
-    WorldView(Picture picture) {
+    WorldView(Picture picture, Markers markers, String title, double elevation) {
         this.picture = picture;
+        this.markers = markers;
+        this.title = title;
+        this.elevation = elevation;
         setBackground(new Color(0xf7f7f4));
         MouseAdapter mouse = new MouseAdapter() {
             @Override public void mousePressed(MouseEvent event) {
@@ -98,11 +105,29 @@ final class WorldView extends JPanel {
                 drawShape(g, body, shape);
             }
         }
+        drawArrows(g, markers.contacts(), CONTACT);
+        g.setStroke(new BasicStroke(2.5f));
+        drawArrows(g, markers.pushes(), PUSH);
         g.setColor(Color.DARK_GRAY);
         if (bodies.size() <= MAX_NAMES) {
             for (Picture.Body body : bodies) g.drawString(body.name, screenX(body.position) + 4, screenY(body.position) - 4);
         }
-        g.drawString(picture.summary() + "     drag: turn   right drag: move   wheel: zoom", 8, 16);
+        g.drawString(title + "     " + picture.summary(), 8, 16);
+        g.drawString("drag: turn   right drag: move   wheel: zoom", 8, getHeight() - 8);
+    }
+
+    /** A dot and a line for each; the longest is ARROW pixels. */
+    private void drawArrows(Graphics2D g, List<Markers.Arrow> arrows, Color color) {
+        double longest = 0;
+        for (Markers.Arrow arrow : arrows) longest = Math.max(longest, arrow.length());
+        g.setColor(color);
+        for (Markers.Arrow arrow : arrows) {
+            int x = screenX(arrow.from), y = screenY(arrow.from);
+            g.fillOval(x - 2, y - 2, 5, 5);
+            if (longest == 0) continue;
+            double[] along = project(arrow.along);
+            g.drawLine(x, y, (int) Math.round(x + ARROW * along[0] / longest), (int) Math.round(y - ARROW * along[1] / longest));
+        }
     }
 
     private double depth(double[] p) {

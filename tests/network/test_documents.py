@@ -1,0 +1,79 @@
+"""Every command and every script that the documents of the clients show does what they say: exit status 0."""
+import pathlib
+import re
+import subprocess
+import sys
+
+import pytest
+from server import CLI, ROOT, SCENES, SERVER, Server
+
+PAGES = ["clients/README.md", "clients/troubleshooting.md"]
+PROGRAMS = {"./run tumble ": [CLI], "./run tumble-server ": [SERVER], "./run python ": [sys.executable]}
+NOT_RUN = {"./run spy": "needs a display; test_spy.py runs it"}
+CXX = ["g++", "-std=c++20", "-fsyntax-only", "-x", "c++", "-"]
+
+
+def blocks(page, language):
+    text = (ROOT / page).read_text(encoding="utf-8")
+    return [match.group(2) for match in re.finditer(r"^```(\w*)\n(.*?)^```$", text, re.M | re.S)
+            if match.group(1) == language]
+
+
+def shell_lines():
+    for page in PAGES:
+        for block in blocks(page, ""):
+            for line in block.splitlines():
+                if line.startswith("./run"):
+                    yield page, re.sub(r"\s+#.*", "", line)
+
+
+def command_of(line):
+    for start, program in PROGRAMS.items():
+        if (line + " ").startswith(start):
+            return [*program, *line[len(start):].split()]
+    assert line in NOT_RUN, f"{line}: not known how to run"
+    return None
+
+
+def test_commands(tmp_path):
+    """In the order of the page, on one server, as a reader would type them."""
+    with Server(tmp_path / "server.log", "--demo", "pyramid") as server:
+        server.wait_for_output("TUMBLE_STATE", 20.0)
+        run = 0
+        for page, line in shell_lines():
+            command = command_of(line)
+            if command is None or line.endswith("watch.py"):  # the latter runs until Ctrl-C: test_examples.py
+                continue
+            done = subprocess.run(command, cwd=ROOT, check=False, timeout=60, capture_output=True, text=True)
+            assert done.returncode == 0, f"{page}: {line}\n{done.stdout}{done.stderr}"
+            run += 1
+        assert run > 15
+
+
+def scripts():
+    return [pytest.param(block, id=f"{pathlib.Path(page).stem}-{i}") for page in PAGES
+            for i, block in enumerate(blocks(page, "python"))]
+
+
+@pytest.mark.parametrize("script", scripts())
+def test_scripts(script, start, wire, tmp_path):
+    """Each with a server of its own, and a recording beside it if it reads one."""
+    log = tmp_path / "run.lcm"
+    server = start(SCENES / "ball.sdf", "--record", log)
+    wire.next("STATE", 20.0, lambda m: m.step > 30)
+    if "spawn(\"ball\"" in script and "Refused" not in script:
+        command = wire.control(wire.verb("REMOVE"), body=wire.bodies()["ball"][0], generation=1)
+        assert wire.ask(command).status == 0
+    if "run.lcm" in script:
+        assert server.stop() == 0
+    done = subprocess.run([sys.executable, "-c", script], cwd=tmp_path, check=False, timeout=60, capture_output=True,
+                          text=True)
+    assert done.returncode == 0, script + done.stderr
+
+
+@pytest.mark.parametrize("source", [block for page in PAGES for block in blocks(page, "cpp")])
+def test_cpp(source):
+    """Compiles against the client library's headers."""
+    build = CLI.parents[2]
+    folders = [ROOT, ROOT / "clients/cpp", build / "protocol/generated"]
+    subprocess.run([*CXX, *(f"-I{folder}" for folder in folders)], input=source, text=True, check=True, timeout=120)

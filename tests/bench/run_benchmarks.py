@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Runs the benchmark programs of a build and writes what they say to README.md, with the machine and the versions.
+"""Runs the benchmark programs of a build and writes what they say to README.md, with the machine and the versions; those named replace their own sections.
 
     run_benchmarks.py BUILD [NAME...]     all programs bench_*, or those named (`step` or `bench_step`)
 
@@ -88,11 +88,20 @@ def main():
             sections.append(f"## {accuracy.name}\n{own_table(accuracy)}")
     if not wanted or "stream" in wanted:
         sections.append(f"## stream\n{stream_table(build)}")
-    text = "\n".join(["# Benchmarks", "Written by `./run bench`; a counter's unit is part of its name.", "",
-                      *machine(build), "", *sections, ""])
-    print(text)
-    if not wanted:  # a part must not replace the whole
-        (HERE / "README.md").write_text(text, encoding="utf-8")
+    print("\n".join(sections))
+    readme = HERE / "README.md"
+    kept = {} if not wanted or not readme.exists() else split(readme.read_text(encoding="utf-8"))
+    kept.update((section.split("\n")[0], section) for section in sections)
+    kept = [f"{section.rstrip()}\n" for _, section in sorted(kept.items())]
+    readme.write_text("\n".join(["# Benchmarks", "Written by `./run bench`; a counter's unit is part of its name. "
+                                 "The machine and the commit are those of the newest run.", "", *machine(build), "",
+                                 *kept]), encoding="utf-8")
+
+
+def split(text):
+    """{title line: section} of a README that this program wrote."""
+    parts = re.split(r"^(?=## )", text, flags=re.M)[1:]
+    return {part.split("\n")[0]: part for part in parts}
 
 
 if __name__ == "__main__":

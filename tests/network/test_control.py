@@ -1,4 +1,7 @@
 """Pause, step and reset, to the bit."""
+import json
+import subprocess
+
 from server import SCENES, run_tumble
 from wire import APPLIED
 
@@ -105,3 +108,29 @@ def test_command_line_names_what_is_wrong(free_bodies, wire):
     assert done.returncode != 0 and "nobody" in done.stderr
     done = run_tumble("--world", "ELSEWHERE", "pause")
     assert done.returncode != 0 and "ELSEWHERE" in done.stderr
+
+
+def test_words_are_completed(tmp_path):
+    """As bash does it: the beginning of a subcommand, and an option of one."""
+    script = tmp_path / "completion"
+    script.write_text(run_tumble("completion").stdout, encoding="utf-8")
+
+    def complete(*words):
+        ask = f"source {script}; COMP_WORDS=({' '.join(words)}); COMP_CWORD={len(words) - 1}; _tumble; echo ${{COMPREPLY[*]}}"
+        return subprocess.run(["bash", "-c", ask], check=True, capture_output=True, text=True).stdout.split()
+    assert complete("tumble", "pau") == ["pause"]
+    assert "--seconds" in complete("tumble", "push", "ball", "--s")
+    assert complete("tumble", "--js") == ["--json"]
+
+
+def test_every_subcommand_speaks_json(free_bodies, wire):
+    for arguments in (["list"], ["pause"], ["step", "3"], ["snapshot", "a"], ["restore", "a"], ["reset"], ["resume"],
+                      ["push", "ball", "--force", "0", "0", "1"], ["watch", "ball", "--count", "2"], ["doctor"],
+                      ["contacts", "on"], ["plot", "ball"], ["remove", "ball"]):
+        done = run_tumble("--json", *arguments)
+        assert done.returncode == 0, (arguments, done.stderr)
+        decoder, text, found = json.JSONDecoder(), done.stdout.strip(), 0
+        while text:
+            _, end = decoder.raw_decode(text)
+            text, found = text[end:].strip(), found + 1
+        assert found >= 1, arguments

@@ -31,8 +31,9 @@ void add_watch(CLI::App& app, const Globals& globals, Action& action);
 void add_push(CLI::App& app, const Globals& globals, Action& action);   // push, torque
 void add_spawn(CLI::App& app, const Globals& globals, Action& action);  // spawn, set, remove
 void add_control(CLI::App& app, const Globals& globals,
-                 Action& action);  // pause, resume, step, reset, contacts, plot
+                 Action& action);  // pause, resume, step, reset, snapshot, restore, contacts, plot
 void add_doctor(CLI::App& app, const Globals& globals, Action& action);
+void add_completion(CLI::App& app, const Globals& globals, Action& action);
 
 /// An option of `size` finite numbers.
 CLI::Option* add_numbers(CLI::App& app, const std::string& name, double* values, int size,

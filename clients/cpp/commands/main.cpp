@@ -55,7 +55,7 @@ int read_and_run(int argc, char** argv) {
   app.fallthrough();
   app.require_subcommand(1);
   add_globals(app, globals);
-  for (const auto add : {add_list, add_watch, add_push, add_spawn, add_control, add_doctor}) {
+  for (const auto add : {add_list, add_watch, add_push, add_spawn, add_control, add_doctor, add_completion}) {
     add(app, globals, action);
   }
   try {

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "protocol/packed.h"
+#include "tumble/contacts.h"
 #include "unit/client/messages.h"
 
 namespace tumble::client {
@@ -158,6 +160,86 @@ TEST_F(PictureTest, ShapesAndVerticesOfABodyMayComeInLaterMessages) {
   }
   EXPECT_TRUE(picture.is_complete());
   EXPECT_EQ(picture.find("ball")->shapes[0].vertices[1][0], 1.0f);
+}
+
+TEST(ClientPicture, KnowsWhetherAPublicationIsWhole) {
+  Picture picture;
+  state_t first = make_state(7, {{0, 1.0}}), second = make_state(7, {{1, 2.0}});
+  first.num_chunks = second.num_chunks = 2;
+  second.chunk = 1;
+  picture.merge(first);
+  picture.merge(first);  // repeated by the network
+  EXPECT_EQ(picture.whole_step(), -1);
+  picture.merge(second);
+  EXPECT_EQ(picture.whole_step(), 7);
+  first.step = second.step = 8;
+  first.utime = 5000;
+  second.utime = 6000;  // of the publication after: between them one message each was lost
+  picture.merge(first);
+  picture.merge(second);
+  EXPECT_EQ(picture.step(), 8);
+  EXPECT_EQ(picture.whole_step(), 7);
+}
+
+TEST(ClientPicture, TakesPackedBodiesThatTheCatalogueKnows) {
+  Picture picture;
+  catalog_t catalog = make_catalog({{0, "floor"}, {1, "ball"}});
+  catalog.generation = {1, 35};
+  catalog.type = {catalog_t::TYPE_STATIC, catalog_t::TYPE_DYNAMIC};
+  packed_t message{};
+  message.utime = 2000;
+  message.session = 1;
+  message.step = 3;
+  message.num_bodies = 2;
+  message.num_chunks = 1;
+  message.edge = kPackedEdge;
+  message.n = 3;
+  message.records.resize(3 * kPackedRecord);
+  message.size = static_cast<std::int32_t>(message.records.size());
+  const std::uint32_t generations[] = {1, 35, 1};
+  for (std::uint32_t id = 0; id < 3; ++id) {
+    PackedBody body;
+    body.id = id;
+    body.generation = generations[id];
+    body.values = {0.0, 0.0, 2.0 * id, 1.0, 0.0, 0.0, 0.0};
+    pack_body(body, message, PackedRecord(message.records.data() + id * kPackedRecord, kPackedRecord));
+  }
+  picture.merge(message);
+  EXPECT_TRUE(picture.bodies().empty()) << "whose they are is not known yet";
+  picture.merge(catalog);
+  message.utime = 3000;
+  picture.merge(message);
+  EXPECT_TRUE(picture.is_complete());
+  EXPECT_EQ(picture.bodies().size(), 2u);
+  EXPECT_TRUE(picture.find("floor")->is_static());
+  EXPECT_EQ(picture.find("ball")->generation, 35);
+  EXPECT_NEAR(picture.find("ball")->position[2], 2.0, 1e-4);
+}
+
+TEST(ClientContacts, GathersTheMessagesOfAStep) {
+  Contacts contacts;
+  contacts_t part{};
+  part.session = 1;
+  part.utime = 10;
+  part.step = 4;
+  part.num_contacts = 2;
+  part.num_chunks = 2;
+  part.n = 1;
+  part.body_a = {3};
+  part.body_b = {5};
+  part.px = part.py = part.pz = part.nx = part.ny = part.nz = part.separation = part.jx = part.jy =
+      part.jz = {0.5};
+  contacts.merge(part);
+  contacts.merge(part);  // repeated by the network
+  EXPECT_EQ(contacts.all.size(), 1u);
+  EXPECT_FALSE(contacts.complete);
+  part.chunk = 1;
+  contacts.merge(part);
+  EXPECT_TRUE(contacts.complete);
+  EXPECT_EQ(contacts.all[1].body_b, 5);
+  part.utime = 9;  // overtaken
+  contacts.merge(part);
+  EXPECT_EQ(contacts.all.size(), 2u);
 }
 
 }  // namespace

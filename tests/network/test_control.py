@@ -125,7 +125,7 @@ def test_words_are_completed(tmp_path):
 
 def test_every_subcommand_speaks_json(free_bodies, wire):
     for arguments in (["list"], ["pause"], ["step", "3"], ["snapshot", "a"], ["restore", "a"], ["reset"], ["resume"],
-                      ["push", "ball", "--force", "0", "0", "1"], ["watch", "ball", "--count", "2"], ["doctor"],
+                      ["push", "ball", "--force", "0", "0", "1", "--seconds", "0.1"], ["watch", "ball", "--count", "2"], ["doctor"],
                       ["contacts", "on"], ["plot", "ball"], ["remove", "ball"]):
         done = run_tumble("--json", *arguments)
         assert done.returncode == 0, (arguments, done.stderr)

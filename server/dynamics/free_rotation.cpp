@@ -24,15 +24,9 @@ Vec3 principal_velocity(const MassProperties& mass, const Motion& start) {
   return w_P;
 }
 
-/// The unit quaternion that turns as the matrix does, by its largest component.
-Quat quaternion_of(const Mat3& R) {
-  return normalized(Quat(R));
-}
-
 }  // namespace
 
-FreeRotation::FreeRotation(const MassProperties& mass, const Motion& start)
-    : start_(start.q), q_BP_(mass.q_BP) {
+FreeRotation::FreeRotation(const MassProperties& mass, const Motion& start) : start_(start.q) {
   classify(mass, start);
 }
 
@@ -68,14 +62,13 @@ void FreeRotation::classify(const MassProperties& mass, const Motion& start) {
 
 void FreeRotation::set_steady(const Vec3& rate_W, const Vec3& spin_B) {
   steady_ = true;
-  rate_W_ = rate_W;
-  spin_B_ = spin_B;
+  about_L_ = Turn(rate_W);
+  about_body_ = Turn(spin_B);
 }
 
 void FreeRotation::set_tumbling(const MassProperties& mass, const Vec3& w_P, const std::array<int, 3>& axes,
                                 double L) {
   steady_ = false;
-  axes_ = axes;
   const bool cyclic = (axes[0] + 1) % 3 == axes[1];
   const double sign3 = w_P[axes[2]] < 0.0 ? -1.0 : 1.0;
   const Vec3 sign(1.0, cyclic ? sign3 : -sign3, sign3);
@@ -86,29 +79,37 @@ void FreeRotation::set_tumbling(const MassProperties& mass, const Vec3& w_P, con
     R_SP(i, axis) = sign[i];
     I_S[i] = mass.I[axis];
     w_S[i] = sign[i] * w_P[axis];
-    L_over_I_[i] = sign[i] * L * mass.inv_I[axis];
+    L_over_I_[i] = L * mass.inv_I[axis];
   }
   tumbling_ = Tumbling(I_S, w_S, L);
-  q_SB_ = quaternion_of(R_SP) * mass.q_BP.conjugate();
+  q_SB_ = normalized(Quat(R_SP)) * mass.q_BP.conjugate();
   start_ = normalized(start_ * (tumbling_.at(0.0).f * q_SB_).conjugate());
+}
+
+FreeRotation::Turn::Turn(const Vec3& rate) : rate_(rate), half_speed_(0.5 * rate.norm()) {
+  if (half_speed_ > 0.0) axis_ = rate / rate.norm();
+}
+
+Quat FreeRotation::Turn::after(double t) const {
+  const auto [s, c] = sincos(t * half_speed_);
+  return Quat(c, s * axis_.x(), s * axis_.y(), s * axis_.z());
 }
 
 FreeRotation::State FreeRotation::at(double t) const {
   if (steady_) {
-    Quat q = exp_map(t * rate_W_) * start_;
-    if (spin_B_.isZero(0.0)) return {q, rate_W_};
-    q = q * exp_map(t * spin_B_);
-    return {q, rate_W_ + q * spin_B_};
+    Quat q = about_L_.after(t) * start_;
+    if (about_body_.speed() == 0.0) return {q, about_L_.rate()};
+    q = q * about_body_.after(t);
+    return {q, about_L_.rate() + q * about_body_.rate()};
   }
+  // w is formed along the sorted axes and then turned: a thin axis keeps its own digits.
   const Tumbling::State now = tumbling_.at(t);
-  const Quat q_WB = start_ * now.f * q_SB_;
-  Vec3 w_P;
-  for (int i = 0; i < 3; ++i) w_P[axes_[static_cast<std::size_t>(i)]] = L_over_I_[i] * now.L_hat[i];
-  return {q_WB, q_WB * (q_BP_ * w_P)};
+  const Quat q_WS = start_ * now.f;
+  return {q_WS * q_SB_, q_WS * Vec3(L_over_I_.cwiseProduct(now.L_hat))};
 }
 
 double FreeRotation::phase_rate() const {
-  return steady_ ? std::max(rate_W_.norm(), spin_B_.norm()) : tumbling_.phase_rate();
+  return steady_ ? std::max(about_L_.speed(), about_body_.speed()) : tumbling_.phase_rate();
 }
 
 }  // namespace tumble

@@ -35,16 +35,27 @@ class FreeRotation {
   void set_steady(const Vec3& rate_W, const Vec3& spin_B);
   void set_tumbling(const MassProperties& mass, const Vec3& w_P, const std::array<int, 3>& axes, double L);
 
+  /// A turn at constant rate about an axis that stays.
+  class Turn {
+   public:
+    Turn() = default;
+    explicit Turn(const Vec3& rate);
+    Quat after(double t) const;
+    const Vec3& rate() const { return rate_; }
+    double speed() const { return 2.0 * half_speed_; }
+
+   private:
+    Vec3 rate_ = Vec3::Zero(), axis_ = Vec3::Zero();
+    double half_speed_ = 0.0;
+  };
+
   bool steady_ = true;
   Quat start_ =
-      Quat::Identity();         ///< Steady: q_WB at the start. Tumbling: W from the frame whose z is along L.
-  Vec3 rate_W_ = Vec3::Zero();  ///< Steady: the body turns about L ...
-  Vec3 spin_B_ = Vec3::Zero();  ///< ... and about its own axis of symmetry [rad/s].
+      Quat::Identity();        ///< Steady: q_WB at the start. Tumbling: W from the frame whose z is along L.
+  Turn about_L_, about_body_;  ///< Steady: in W about L, and in B about the body's axis of symmetry.
   Tumbling tumbling_;
-  Quat q_SB_ = Quat::Identity();  ///< Body axes to sorted axes S.
-  Quat q_BP_ = Quat::Identity();
-  std::array<int, 3> axes_ = {0, 1, 2};  ///< Principal axis of each sorted one,
-  Vec3 L_over_I_ = Vec3::Zero();         ///< with its sign times L/I [rad/s].
+  Quat q_SB_ = Quat::Identity();  ///< Tumbling: body axes to sorted axes S,
+  Vec3 L_over_I_ = Vec3::Zero();  ///< and L/I of these [rad/s].
 };
 
 }  // namespace tumble

@@ -225,13 +225,14 @@ Tumbling::State Tumbling::at(double t) const {
   const Thetas theta = circular_ ? circular(z) : hyperbolic(z);
   const double across2 = theta.T1 * theta.T1 + theta.T2 * theta.T2;
   const double across = std::sqrt(across2), N = 1.0 / std::sqrt(across2 + theta.T3 * theta.T3);
+  const double inv_across = 1.0 / across;
   State state;
   state.L_hat = N * Vec3(theta.T2, theta.T1, theta.T3);
 
   // Half the polar angles of L, then half the precession: no arc tangent.
   const SinCos polar = half_angle(N * across, state.L_hat.z());
-  const double cos_phi = across > 0.0 ? theta.T2 / across : 1.0,
-               sin_phi = across > 0.0 ? theta.T1 / across : 0.0;
+  const double cos_phi = across > 0.0 ? theta.T2 * inv_across : 1.0;
+  const double sin_phi = across > 0.0 ? theta.T1 * inv_across : 0.0;
   SinCos phi = half_angle(sin_phi, std::abs(cos_phi));
   if (cos_phi < 0.0) {
     const double j = sign(sin_phi);

@@ -10,9 +10,9 @@
 namespace tumble {
 namespace {
 
-/// How many steps ahead the box of a body aloft reaches: from the first try, doubled whenever it was left without having
-/// met anybody, halved while it holds somebody.
-constexpr std::uint64_t kNearest = 8, kFarthest = std::uint64_t{1} << 20;
+/// How many steps ahead the box of a body aloft reaches: much farther whenever it was left without having met anybody,
+/// nearer while it holds somebody.
+constexpr std::uint64_t kNearest = 8, kFarther = 64, kNearer = 4, kFarthest = std::uint64_t{1} << 19;
 
 /// Phases [rad] within which a flight keeps its digits; then it is started anew.
 constexpr double kLargestPhase = 1e6;
@@ -99,9 +99,10 @@ bool World::reach_ahead(std::uint32_t slot, std::uint64_t now, std::uint64_t unt
 
 bool World::lift(std::uint32_t slot, std::uint64_t now) {
   FreeBody& body = free_[slot];
-  const std::uint64_t farthest = std::min(kFarthest, 2 * body.reach);
-  for (body.reach = farthest; body.reach >= kNearest; body.reach /= 2) {
-    const std::uint64_t until = std::min(now + body.reach, body.last);
+  for (body.reach = std::min(kFarthest, kFarther * body.reach); body.reach >= kNearest;
+       body.reach /= kNearer) {
+    // Bodies thrown together do not all end together.
+    const std::uint64_t until = std::min(now + body.reach - slot % (body.reach / 2), body.last);
     if (until <= now || !reach_ahead(slot, now, until)) continue;
     body.due = until;
     due_.push_back({until, slot});

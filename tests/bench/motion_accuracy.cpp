@@ -99,7 +99,7 @@ void write_curves(const char* file) {
     std::perror(file);
     std::exit(1);
   }
-  std::fprintf(csv, "case,method,dt,angle_error_rad,position_error_m,energy_error,cpu_s\n");
+  std::fprintf(csv, "case,method,dt,angle_error_rad,position_error_m,energy_error,cpu_s,qw,qx,qy,qz\n");
   std::vector<std::pair<std::string, Simulate>> methods;
   for (int i = 0; i < static_cast<int>(Integrator::closed_form); ++i) {
     const auto integrator = static_cast<Integrator>(i);
@@ -130,9 +130,9 @@ void write_curves(const char* file) {
         const Vec3 w_B = end.q.conjugate() * end.w;
         const double now =
             0.5 * (end.v.squaredNorm() + w_B.dot(c.I.cwiseProduct(w_B))) - c.gravity.dot(end.x);
-        std::fprintf(csv, "%s,%s,%.17g,%.3e,%.3e,%.3e,%.3e\n", c.name, name.c_str(), h,
-                     angle_between(end.q, c.end), (end.x - (t * c.v + 0.5 * t * t * c.gravity)).norm(),
-                     std::abs(now / energy - 1.0), cpu);
+        std::fprintf(csv, "%s,%s,%.17g,%.3e,%.3e,%.3e,%.3e,%.17g,%.17g,%.17g,%.17g\n", c.name, name.c_str(),
+                     h, angle_between(end.q, c.end), (end.x - (t * c.v + 0.5 * t * t * c.gravity)).norm(),
+                     std::abs(now / energy - 1.0), cpu, end.q.w(), end.q.x(), end.q.y(), end.q.z());
       }
     }
   }

@@ -3,8 +3,9 @@
 
     run_benchmarks.py BUILD [NAME...]     all programs bench_*, or those named (`step` or `bench_step`)
 
-`stream` is stream.py, run in a network namespace of its own. Beside bench_NAME a program NAME_accuracy may print a Markdown table of its own; its first argument is the share of its
-full size to run, TUMBLE_SHARE or 0.001.
+`stream` is stream.py, run in a network namespace of its own. Beside bench_NAME a program NAME_accuracy may print a
+Markdown table of its own; its first argument is the share of its full size to run, TUMBLE_SHARE or 0.001. A script
+NAME_curves.py runs it instead, if there is one, and writes what it draws beside the programs.
 """
 import json
 import os
@@ -43,7 +44,9 @@ def own_table(program):
     """What a program that prints Markdown says."""
     print(f"running {program.name}", file=sys.stderr)
     share = os.environ.get("TUMBLE_SHARE", "0.001")
-    return subprocess.run([program, share], check=True, stdout=subprocess.PIPE, text=True).stdout
+    curves = HERE / f"{program.name.removesuffix('_accuracy')}_curves.py"
+    command = [sys.executable, curves, program, share, program.parent] if curves.is_file() else [program, share]
+    return subprocess.run(command, check=True, stdout=subprocess.PIPE, text=True).stdout
 
 
 def stream_table(build):

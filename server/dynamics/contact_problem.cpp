@@ -129,7 +129,7 @@ ContactProblem::Drift choose_drift(const ContactProblem& problem) {
     if (!stays_open(c.a, c.b, c.n, c.rA, c.rB, c.separation)) return ContactProblem::Drift::end;
   }
   for (const ScalarRow& row : problem.rows) {
-    if (!row.is_soft() && !stays_open(row.a, row.b, row.n, row.rA, row.rB, row.gap)) {
+    if (!row.is_soft() && !row.is_two_sided() && !stays_open(row.a, row.b, row.n, row.rA, row.rB, row.gap)) {
       return ContactProblem::Drift::end;
     }
   }

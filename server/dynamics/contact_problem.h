@@ -38,10 +38,9 @@ struct PointContact {
   double mass_n = 0.0, mass_t = 0.0;  ///< 1/k_nn and 1/lambda_max(K_tt) [kg]; set by `prepare`.
 };
 
-/// One direction: u = n . (velocity of b's anchor - a's anchor). a, b, rA, rB are given by the owner of the row, the
-/// rest by make_spring_row or make_rope_row.
+/// One direction: u = n . (velocity of b's anchor - a's anchor). Made by make_spring_row, make_rope_row, make_joint_row.
 ///   soft:  lambda = -softness (u + bias), unbounded (springs);   rigid (softness = inf): u >= bound, lambda >= 0 (rope:
-///   n from a to b reversed, so that lambda >= 0 pulls the bodies together).
+///   n from a to b reversed, so that lambda >= 0 pulls the bodies together), or with lower = -inf u = bound (joint).
 struct ScalarRow {
   std::uint32_t a, b;
   Vec3 n, rA, rB;
@@ -51,13 +50,15 @@ struct ScalarRow {
       0.0;  ///< k [N/m], soft rows: with damping and extension it can be softened for a shorter step.
   double damping = 0.0;    ///< c [N s/m], soft rows.
   double extension = 0.0;  ///< [m] at the start of the step, soft rows.
-  double gap = 0.0;        ///< [m] way left against n before the row is taut, rigid rows; < 0 over-long.
-  double bound = 0.0;      ///< [m/s], rigid rows only.
-  double lower = 0.0;      ///< Smallest lambda: 0 or -infinity.
-  double lambda = 0.0;     ///< [N s]
-  double mass = 0.0;       ///< 1/k [kg]; set by `prepare`.
+  double gap =
+      0.0;  ///< [m] way left against n before the row is taut, rigid rows; < 0 over-long; joint: distance.
+  double bound = 0.0;   ///< [m/s], rigid rows only.
+  double lower = 0.0;   ///< Smallest lambda: 0 or -infinity.
+  double lambda = 0.0;  ///< [N s]
+  double mass = 0.0;    ///< 1/k [kg]; set by `prepare`.
 
   bool is_soft() const { return softness < std::numeric_limits<double>::infinity(); }
+  bool is_two_sided() const { return lower < 0.0; }
 };
 
 struct ContactProblem {

@@ -53,7 +53,7 @@ double resolve_row(ContactProblem& problem, ScalarRow& row) {
   const UnitImpulse unit = unit_impulse(A, B, row.n, row.rA, row.rB);
   const double f = row.is_soft()
                        ? -(row.lambda + row.softness * (u + row.bias)) / (1.0 + row.softness * unit.ds)
-                       : std::max(0.0, (row.bound - u) / unit.ds);
+                       : std::max(row.is_two_sided() ? row.lower : 0.0, (row.bound - u) / unit.ds);
   apply(A, B, unit, f);
   row.lambda += f;
   return std::abs(f) * unit.ds;

@@ -59,7 +59,7 @@ class SoftStep {
 
   void kick_and_warm_start();
   void sweep(bool push);
-  void soften_rows();
+  void soften_rows(double share);
   void move();
   void add_impulses();
   void store();
@@ -123,8 +123,9 @@ void SoftStep::kick_and_warm_start() {
   }
 }
 
-/// Springs from their length at the start of the sub-step; ropes from the way that is left.
-void SoftStep::soften_rows() {
+/// Springs from their length at the start of the sub-step; ropes from the way that is left; joints
+/// from their bound at the end of the step, `share` of which is over with this sub-step.
+void SoftStep::soften_rows(double share) {
   auto swept = sweep_.rows.begin();
   auto path = rows_.begin();
   for (const ScalarRow& given : problem_.rows) {
@@ -135,6 +136,10 @@ void SoftStep::soften_rows() {
                  swept->n.velocity(start_[swept->a], start_[swept->b]), drift_);
       swept->softness = row.softness;
       swept->bias = row.bias;
+    } else if (given.is_two_sided()) {
+      // With arms fixed at the middle of the step, what turns has the opposite speed at its start as at its end.
+      const double closing = -given.gap / problem_.h;
+      swept->bound = closing + (2.0 * share - 1.0) * (given.bound - closing);
     } else if (given.bound <= 0.0) {
       swept->bound = -std::max(0.0, -given.bound * problem_.h + path->moved) / h_;
     }
@@ -218,7 +223,7 @@ void SoftStep::store() {
 void SoftStep::solve() {
   for (int i = 0; i < sub_steps_; ++i) {
     kick_and_warm_start();
-    soften_rows();
+    soften_rows((i + 1.0) / sub_steps_);
     sweep(true);
     move();
     sweep(false);

@@ -42,6 +42,12 @@ World build_world(const Scene& scene) {
           {rope.name, find_anchor(world, rope.a, "a"), find_anchor(world, rope.b, "b"), rope.rope});
     });
   }
+  for (const SceneJoint& joint : scene.joints) {
+    create_named("joint", joint.name, [&] {
+      world.create_joint(
+          {joint.name, joint.kind, find_anchor(world, joint.a, "a"), find_anchor(world, joint.b, "b")});
+    });
+  }
   return world;
 }
 

@@ -1,4 +1,4 @@
-// A scene as read from a file or built in: options and everything to create, springs and ropes naming their bodies.
+// A scene as read from a file or built in: options and everything to create, springs, ropes and joints naming their bodies.
 // Reading a scene never touches a world; building a world from it is one call.
 #pragma once
 
@@ -26,12 +26,19 @@ struct SceneRope {
   Rope rope;
 };
 
+struct SceneJoint {
+  std::string name;
+  JointKind kind;
+  SceneAnchor a, b;
+};
+
 struct Scene {
   std::string name;  ///< The world's name in the file.
   Options options;
   std::vector<BodyDefinition> bodies;
   std::vector<SceneSpring> springs;
   std::vector<SceneRope> ropes;
+  std::vector<SceneJoint> joints;
 };
 
 /// A world with everything in it. Throws std::invalid_argument("body 'name': field: reason (value)").

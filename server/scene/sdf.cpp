@@ -35,12 +35,16 @@ class Models {
  public:
   explicit Models(Scene& scene) : scene_(scene) {}
 
-  void add(const SdfElement& element, std::vector<BodyDefinition> bodies) {
-    for (BodyDefinition& body : bodies) {
+  void add(const SdfElement& element, PlacedModel model) {
+    for (BodyDefinition& body : model.bodies) {
       check_body_name(element, body.name);
       if (!body.X_WL.p.allFinite()) element.fail("its position overflows", body.name);
       if (!names_.insert(body.name).second) element.fail_attribute("name", "is used twice", body.name);
       scene_.bodies.push_back(std::move(body));
+    }
+    for (SceneJoint& joint : model.joints) {
+      check_body_name(element, joint.name);
+      scene_.joints.push_back(std::move(joint));
     }
   }
   void add_model(SdfElement& element) {
@@ -87,13 +91,15 @@ void read_world(SdfElement& world, Scene& scene) {
   read_world_options(world, scene.options);
   const std::uint64_t seed = read_seed(world);
   world.refuse("include", "only meshes can be included, by <mesh><uri>");
-  world.refuse("joint", "joints are not supported yet, and without it the bodies would move differently");
+  world.refuse("joint", "stands within a <model>; bodies of two models are joined by <tumble:joint>");
   Models models(scene);
   for (SdfElement& element : world.children({"model", "population"})) {
     if (element.tag() == "model") {
       models.add_model(element);
     } else {
-      models.add(element, read_population(element, models.lookup(), seed));
+      for (PlacedModel& model : read_population(element, models.lookup(), seed)) {
+        models.add(element, std::move(model));
+      }
     }
   }
   if (std::optional<SdfElement> state = world.child("state")) read_state(*state, scene);

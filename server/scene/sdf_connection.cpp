@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <unordered_map>
 
+#include "scene/sdf_joint.h"
 #include "scene/sdf_model.h"
 
 namespace tumble {
@@ -73,6 +74,15 @@ SceneRope read_rope(SdfElement& element, const Scene& scene, const Bodies& bodie
   return rope;
 }
 
+SceneJoint read_joint(SdfElement& element, const Scene& scene, const Bodies& bodies) {
+  SceneJoint joint;
+  joint.name = read_name(element, scene.joints);
+  joint.kind = read_joint_kind(element);
+  read_anchors(element, bodies, joint);
+  element.finish();
+  return joint;
+}
+
 }  // namespace
 
 void read_connections(SdfElement& world, Scene& scene) {
@@ -83,6 +93,9 @@ void read_connections(SdfElement& world, Scene& scene) {
   }
   for (SdfElement& element : world.children({"tumble:rope"})) {
     scene.ropes.push_back(read_rope(element, scene, bodies));
+  }
+  for (SdfElement& element : world.children({"tumble:joint"})) {
+    scene.joints.push_back(read_joint(element, scene, bodies));
   }
 }
 

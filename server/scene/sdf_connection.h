@@ -1,4 +1,4 @@
-// <tumble:spring> and <tumble:rope>: connections between points of bodies, or of a body and the world.
+// <tumble:spring>, <tumble:rope> and <tumble:joint>: connections between points of bodies, or of a body and the world.
 #pragma once
 
 #include "scene/scene.h"
@@ -6,7 +6,7 @@
 
 namespace tumble {
 
-/// Reads the springs and ropes of a world whose bodies are already in `scene`.
+/// Reads the springs, ropes and joints of a world whose bodies are already in `scene`.
 void read_connections(SdfElement& world, Scene& scene);
 
 }  // namespace tumble

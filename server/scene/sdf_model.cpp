@@ -193,7 +193,6 @@ std::optional<Pose> read_model_pose(SdfElement& model, const FrameLookup& find_f
 }
 
 void refuse_what_changes_motion(SdfElement& model) {
-  model.refuse("joint", "joints are not supported yet, and without it the bodies would move differently");
   model.refuse("model", "nested models are not supported: write them side by side");
   model.refuse("include", "only meshes can be included, by <mesh><uri>");
   if (const auto frame = model.attribute("placement_frame")) {
@@ -227,18 +226,30 @@ SdfModel read_model(SdfElement& element, const FrameLookup& find_frame) {
     model.links.push_back(read_link(link, is_static, model.links));
   }
   if (model.links.empty()) element.fail("needs a <link>", model.name);
+  model.joints = read_joints(element, model.links);
   element.finish();
   return model;
 }
 
-std::vector<BodyDefinition> placed(const SdfModel& model, const std::optional<Pose>& X_WM,
-                                   const std::string& name) {
-  std::vector<BodyDefinition> bodies = model.links;
-  for (BodyDefinition& body : bodies) {
-    body.name = bodies.size() == 1 ? name : name + "::" + body.name;
+PlacedModel placed(const SdfModel& model, const std::optional<Pose>& X_WM, const std::string& name) {
+  PlacedModel result;
+  const auto body_name = [&](const std::string& link) {
+    return model.links.size() == 1 ? name : name + "::" + link;
+  };
+  for (BodyDefinition body : model.links) {
+    body.name = body_name(body.name);
     body.X_WL = chained(X_WM, body.X_WL);
+    result.bodies.push_back(std::move(body));
   }
-  return bodies;
+  for (const SdfJoint& joint : model.joints) {
+    const auto anchor = [&](const SdfJoint::End& end) -> SceneAnchor {
+      if (end.link.empty()) return {"", X_WM ? *X_WM * end.p : end.p};
+      return {body_name(end.link), end.p};
+    };
+    result.joints.push_back(
+        {name + "::" + joint.name, joint.kind, anchor(joint.parent), anchor(joint.child)});
+  }
+  return result;
 }
 
 }  // namespace tumble

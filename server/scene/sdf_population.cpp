@@ -140,8 +140,8 @@ std::uint64_t mixed_seed(std::uint64_t seed, const std::string& name) {
 
 }  // namespace
 
-std::vector<BodyDefinition> read_population(SdfElement& population, const FrameLookup& find_frame,
-                                            std::uint64_t seed) {
+std::vector<PlacedModel> read_population(SdfElement& population, const FrameLookup& find_frame,
+                                         std::uint64_t seed) {
   const std::string name = population.required_attribute("name");
   SdfElement model_element = population.required_child("model");
   const SdfModel model = read_model(model_element, find_frame);
@@ -158,17 +158,16 @@ std::vector<BodyDefinition> read_population(SdfElement& population, const FrameL
   distribution.finish();
   population.finish();
 
-  std::vector<BodyDefinition> bodies;
+  std::vector<PlacedModel> models;
   for (std::size_t i = 0; i < offsets.size(); ++i) {
     const Vec3 shift = random.in_box(jitter);
     const Quat rotation = turn ? random.rotation() : Quat::Identity();
     const Pose X_PM = chained(Pose{rotation, offsets[i] + shift}, model.X_WM);
     const std::string clone_name = model.name + "_" + std::to_string(i);
     check_body_name(model_element, clone_name);
-    for (BodyDefinition& body : placed(model, chained(X_WP, X_PM), clone_name))
-      bodies.push_back(std::move(body));
+    models.push_back(placed(model, chained(X_WP, X_PM), clone_name));
   }
-  return bodies;
+  return models;
 }
 
 }  // namespace tumble

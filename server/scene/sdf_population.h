@@ -10,7 +10,7 @@ namespace tumble {
 
 /// Places the copies NAME_0, NAME_1, ... of the model NAME. The same seed, population name and content give the same
 /// bits; other populations have no influence.
-std::vector<BodyDefinition> read_population(SdfElement& population, const FrameLookup& find_frame,
-                                            std::uint64_t seed);
+std::vector<PlacedModel> read_population(SdfElement& population, const FrameLookup& find_frame,
+                                         std::uint64_t seed);
 
 }  // namespace tumble

@@ -4,6 +4,7 @@
 
 #include "scene/sdf.h"
 #include "scene/sdf_element.h"
+#include "scene/sdf_joint.h"
 #include "scene/sdf_physics.h"
 
 namespace tumble {
@@ -236,6 +237,13 @@ void write_rope(tinyxml2::XMLPrinter& out, const SceneRope& rope) {
   write(out, "tumble:restitution", rope.rope.restitution);
 }
 
+void write_joint(tinyxml2::XMLPrinter& out, const SceneJoint& joint) {
+  Tag element(out, "tumble:joint", joint.name);
+  element.attribute("type", joint_kind_name(joint.kind));
+  write_anchor(out, "tumble:a", joint.a);
+  write_anchor(out, "tumble:b", joint.b);
+}
+
 }  // namespace
 
 std::string write_sdf(const Scene& scene) {
@@ -250,6 +258,7 @@ std::string write_sdf(const Scene& scene) {
     for (const BodyDefinition& body : scene.bodies) write_body(out, body);
     for (const SceneSpring& spring : scene.springs) write_spring(out, spring);
     for (const SceneRope& rope : scene.ropes) write_rope(out, rope);
+    for (const SceneJoint& joint : scene.joints) write_joint(out, joint);
   }
   return out.CStr();
 }

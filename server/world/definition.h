@@ -9,6 +9,7 @@
 
 #include "dynamics/body.h"
 #include "dynamics/force_spring.h"
+#include "dynamics/joint.h"
 #include "dynamics/joint_rope.h"
 
 namespace tumble {
@@ -40,7 +41,7 @@ struct BodyDefinition {
   bool gravity = true;
 };
 
-/// An end of a spring or rope: a point of a body, or of the world.
+/// An end of a spring, rope or joint: a point of a body, or of the world.
 struct Anchor {
   std::optional<BodyId> body;  ///< None: the world.
   Vec3 p = Vec3::Zero();       ///< In the body's link frame, or in W [m].
@@ -56,6 +57,18 @@ struct RopeDefinition {
   std::string name;
   Anchor a, b;
   Rope rope;
+};
+
+enum class JointKind {
+  ball,   ///< The ends stay together, all turns are free.
+  fixed,  ///< The bodies stay as they are to each other, ends together.
+};
+
+/// Bodies held together do not collide with each other.
+struct JointDefinition {
+  std::string name;
+  JointKind kind = JointKind::ball;
+  Anchor a, b;
 };
 
 /// A force and a torque that act on one body for a while. The point is fixed to the body.

@@ -79,7 +79,7 @@ void World::build_problem(std::size_t island, const StepContext& step) {
     if (source < contact_count) {
       add_contact_rows(source, step.h);
     } else {
-      add_tie_row(source - contact_count, step.h);
+      add_tie_rows(source - contact_count, step.h);
     }
   }
   for (const std::uint32_t slot : scratch_.problem_slot) {
@@ -140,22 +140,30 @@ void World::add_contact_rows(std::uint32_t contact_index, double h) {
   }
 }
 
-void World::add_tie_row(std::uint32_t tie_index, double h) {
+void World::add_tie_rows(std::uint32_t tie_index, double h) {
   const Tie& tie = ties_[tie_index];
   ScalarRow row;
   row.a = problem_body(tie.a, h);
   row.b = problem_body(tie.b, h);
   const SolverBody& A = scratch_.problem.bodies[row.a];
   const SolverBody& B = scratch_.problem.bodies[row.b];
+  if (const Joint* joint = std::get_if<Joint>(&tie.law)) {
+    for (std::uint32_t i = 0; i < joint->rows; ++i)
+      add_row(make_joint_row(joint->held[i], row.a, row.b, A, B, h, options_.bounds), tie_index, i);
+    return;
+  }
   row.rA = A.q * tie.pA;
   row.rB = B.q * tie.pB;
   const Spring* spring = std::get_if<Spring>(&tie.law);
   const bool acts = spring ? make_spring_row(*spring, A, B, h, row)
                            : make_rope_row(std::get<Rope>(tie.law), A, B, h, options_.bounds, row);
-  if (!acts) return;
-  if (options_.warm_start) row.lambda = tie.lambda;
+  if (acts) add_row(row, tie_index, 0);
+}
+
+void World::add_row(ScalarRow row, std::uint32_t tie_index, std::uint32_t index) {
+  if (options_.warm_start) row.lambda = ties_[tie_index].lambda[index];
   scratch_.problem.rows.push_back(row);
-  scratch_.row_source.push_back(tie_index);
+  scratch_.row_source.push_back({tie_index, index});
 }
 
 void World::store_impulses() {
@@ -168,7 +176,8 @@ void World::store_impulses() {
   }
   for (std::size_t i = 0; i < scratch_.problem.rows.size(); ++i) {
     const double lambda = scratch_.problem.rows[i].lambda;
-    ties_[scratch_.row_source[i]].lambda = std::isfinite(lambda) ? lambda : 0.0;
+    const Scratch::RowSource source = scratch_.row_source[i];
+    ties_[source.tie].lambda[source.row] = std::isfinite(lambda) ? lambda : 0.0;
   }
 }
 

@@ -131,7 +131,7 @@ void World::update_pairs() {
   std::erase_if(scratch_.pairs, [this](const GeometryPair& pair) {
     const std::uint32_t a = geometries_[pair.a].body;
     const std::uint32_t b = geometries_[pair.b].body;
-    return a == b || !(movable(a) || movable(b));
+    return a == b || !(movable(a) || movable(b)) || jointed(a, b);
   });
   split_surface_pairs();
   scratch_.lost.clear();
@@ -168,7 +168,8 @@ void World::split_surface_pairs() {
 }
 
 bool World::is_lost(GeometryPair pair) const {
-  if (!broad_phase_.overlaps(pair)) return true;
+  if (!broad_phase_.overlaps(pair) || jointed(geometries_[pair.a].body, geometries_[pair.b].body))
+    return true;
   const std::vector<GeometryPair>&whole = scratch_.split_pairs, &pairs = scratch_.pairs;
   return std::binary_search(whole.begin(), whole.end(), GeometryPair{pair.a, pair.b}) &&
          !std::binary_search(pairs.begin(), pairs.end(), pair);

@@ -195,6 +195,7 @@ bool World::destroy_body(BodyId id) {
   wake_slot(slot);
   land(slot);
   std::erase_if(ties_, [slot](const Tie& tie) { return tie.a == slot || tie.b == slot; });
+  find_jointed();
   std::erase_if(pushes_, [slot](const ActivePush& active) { return active.push.body.index == slot; });
   for (const std::uint32_t geometry : bodies_[slot].geometries) {
     broad_phase_.remove(geometry);
@@ -223,15 +224,18 @@ void World::resolve_anchor(const Anchor& anchor, std::uint32_t& slot, Vec3& p) c
   p -= bodies_[slot].p_LB;
 }
 
-void World::add_tie(const std::string& name, const Anchor& a, const Anchor& b,
-                    const std::variant<Spring, Rope>& law) {
+World::Tie World::make_tie(const std::string& name, const Anchor& a, const Anchor& b) const {
   check_name(name);
-  Tie tie{.a = kWorld, .b = kWorld, .pA = {}, .pB = {}, .law = law, .lambda = 0.0};
+  Tie tie{.a = kWorld, .b = kWorld, .pA = {}, .pB = {}, .law = {}, .lambda = {}};
   resolve_anchor(a, tie.a, tie.pA);
   resolve_anchor(b, tie.b, tie.pB);
   const bool moves = (tie.a != kWorld && movable(tie.a)) || (tie.b != kWorld && movable(tie.b));
   if (!moves || tie.a == tie.b)
-    refuse("anchor: a spring or rope needs two different ends, one on a dynamic body");
+    refuse("anchor: a spring, rope or joint needs two different ends, one on a dynamic body");
+  return tie;
+}
+
+void World::add_tie(const Tie& tie) {
   for (const std::uint32_t slot : {tie.a, tie.b}) {
     if (slot == kWorld) continue;
     wake_slot(slot);
@@ -244,13 +248,53 @@ void World::create_spring(const SpringDefinition& definition) {
   check_range("rest length", definition.spring.rest_length, 0.0, kMaxCoordinate);
   check_range("stiffness", definition.spring.stiffness, 0.0, 1e15);
   check_range("damping", definition.spring.damping, 0.0, 1e15);
-  add_tie(definition.name, definition.a, definition.b, definition.spring);
+  Tie tie = make_tie(definition.name, definition.a, definition.b);
+  tie.law = definition.spring;
+  add_tie(tie);
 }
 
 void World::create_rope(const RopeDefinition& definition) {
   check_range("length", definition.rope.length, 1e-9, kMaxCoordinate);
   check_range("restitution", definition.rope.restitution, 0.0, 1.0);
-  add_tie(definition.name, definition.a, definition.b, definition.rope);
+  Tie tie = make_tie(definition.name, definition.a, definition.b);
+  tie.law = definition.rope;
+  add_tie(tie);
+}
+
+void World::create_joint(const JointDefinition& definition) {
+  Tie tie = make_tie(definition.name, definition.a, definition.b);
+  tie.law = make_joint(definition.kind, tie);
+  add_tie(tie);
+  find_jointed();
+}
+
+Joint World::make_joint(JointKind kind, const Tie& tie) const {
+  if (kind == JointKind::ball) return make_ball_joint(tie.pA, tie.pB);
+  double arm = kInfinity;
+  Quat q_WA = Quat::Identity(), q_WB = Quat::Identity();
+  for (const auto& [slot, q] : {std::pair{tie.a, &q_WA}, std::pair{tie.b, &q_WB}}) {
+    if (slot == kWorld) continue;
+    *q = motion(slot).q;
+    const MassProperties& mass = masses_[slot];
+    if (movable(slot)) arm = std::min(arm, std::sqrt(mass.I.maxCoeff() * mass.inv_mass));
+  }
+  return make_fixed_joint(tie.pA, tie.pB, normalized(q_WA.conjugate() * q_WB), arm);
+}
+
+void World::find_jointed() {
+  jointed_.clear();
+  for (const Tie& tie : ties_) {
+    if (std::holds_alternative<Joint>(tie.law) && tie.a != kWorld && tie.b != kWorld) {
+      jointed_.push_back(std::minmax(tie.a, tie.b));
+    }
+  }
+  std::sort(jointed_.begin(), jointed_.end());
+}
+
+bool World::jointed(std::uint32_t a, std::uint32_t b) const {
+  if (jointed_.empty()) return false;
+  const std::pair<std::uint32_t, std::uint32_t> pair = std::minmax(a, b);
+  return std::binary_search(jointed_.begin(), jointed_.end(), pair);
 }
 
 void World::check_live(BodyId id, const char* field) const {

@@ -50,10 +50,11 @@ class World {
 
   // Creation: all throw std::invalid_argument("field: reason (value)") and then have changed nothing.
   BodyId create_body(const BodyDefinition& definition);
-  /// Also removes its springs, ropes and pushes, and wakes what it touched. False: no such body (stale id).
+  /// Also removes its springs, ropes, joints and pushes, and wakes what it touched. False: no such body (stale id).
   bool destroy_body(BodyId id);
   void create_spring(const SpringDefinition& definition);
   void create_rope(const RopeDefinition& definition);
+  void create_joint(const JointDefinition& definition);
 
   // Commands between steps.
   /// Starts a push at the next step. Throws for non-finite or out-of-range values, stale ids, fixed bodies.
@@ -126,12 +127,12 @@ class World {
     std::uint32_t slot;
     auto operator<=>(const Due&) const = default;
   };
-  /// A spring or rope between two anchors in body frames; slot kWorld: p in W.
+  /// A spring, rope or joint between two anchors in body frames; slot kWorld: p in W.
   struct Tie {
     std::uint32_t a, b;
     Vec3 pA, pB;
-    std::variant<Spring, Rope> law;
-    double lambda = 0.0;  // rope: warm start [N s]
+    std::variant<Spring, Rope, Joint> law;
+    std::array<double, Joint::kMostRows> lambda{};  // of its rows: warm start [N s]
   };
   /// Thrown away at any time; kept so that a step allocates nothing after warm-up.
   struct Scratch {
@@ -154,7 +155,10 @@ class World {
       std::uint32_t contact, point;
     };
     std::vector<Source> contact_source;
-    std::vector<std::uint32_t> row_source;
+    struct RowSource {
+      std::uint32_t tie, row;
+    };
+    std::vector<RowSource> row_source;
     struct AfterForces {
       Vec3 L;
       Mat3 I_W;
@@ -175,8 +179,10 @@ class World {
   std::uint32_t take_slot();
   std::uint32_t add_geometry(std::uint32_t slot, const GeometryDefinition& definition);
   void resolve_anchor(const Anchor& anchor, std::uint32_t& slot, Vec3& p) const;
-  void add_tie(const std::string& name, const Anchor& a, const Anchor& b,
-               const std::variant<Spring, Rope>& law);
+  /// Refuses ends that no law can join, and changes nothing.
+  Tie make_tie(const std::string& name, const Anchor& a, const Anchor& b) const;
+  void add_tie(const Tie& tie);
+  Joint make_joint(JointKind kind, const Tie& tie) const;
   void check_live(BodyId id, const char* field) const;
   bool movable(std::uint32_t slot) const { return bodies_[slot].type == BodyType::dynamic; }
   bool awake(std::uint32_t slot) const { return awake_flag_[slot] != 0; }
@@ -195,6 +201,9 @@ class World {
   void advance_islands(const StepContext& step);
   void update_boxes(const StepContext& step);
   void update_report();
+  /// Held together by a joint: they do not collide.
+  bool jointed(std::uint32_t a, std::uint32_t b) const;
+  void find_jointed();
   /// Awake, or a kinematic body on the move: its contacts are looked at.
   bool takes_part(std::uint32_t slot) const;
 
@@ -235,7 +244,8 @@ class World {
   void build_problem(std::size_t island, const StepContext& step);
   std::uint32_t problem_body(std::uint32_t slot, double h);
   void add_contact_rows(std::uint32_t contact_index, double h);
-  void add_tie_row(std::uint32_t tie_index, double h);
+  void add_tie_rows(std::uint32_t tie_index, double h);
+  void add_row(ScalarRow row, std::uint32_t tie_index, std::uint32_t index);
   void store_impulses();
   bool try_rest(double residual);
   void move_bodies(const StepContext& step);
@@ -269,6 +279,7 @@ class World {
   BroadPhase broad_phase_;
   ContactGraph contacts_;
   std::vector<Tie> ties_;
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> jointed_;  // slots, smaller first, ascending
   std::vector<ActivePush> pushes_;
 
   std::vector<Due> due_;  // heap, earliest first: boxes of bodies aloft that end; some are out of date

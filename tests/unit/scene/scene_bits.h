@@ -27,6 +27,10 @@ class SceneBits {
       add(rope.rope.length);
       add(rope.rope.restitution);
     }
+    for (const SceneJoint& joint : scene.joints) {
+      add_ends(joint);
+      add(static_cast<std::uint64_t>(joint.kind));
+    }
   }
   bool operator==(const SceneBits&) const = default;
   std::size_t size() const { return words_.size(); }

@@ -207,8 +207,8 @@ TEST(SdfError, NamesAndReferences) {
 }
 
 TEST(SdfError, WhatWouldChangeTheMotionIsRefused) {
-  check({{in_world("<model name='a'>\n<joint name='j' type='fixed'/></model>"),
-          "s.sdf:4: <joint>: joints are not supported yet, and without it the bodies would move differently"},
+  check({{in_world("<joint name='j' type='fixed'/>"),
+          "s.sdf:3: <joint>: stands within a <model>; bodies of two models are joined by <tumble:joint>"},
          {in_world("<include><uri>x</uri></include>"),
           "s.sdf:3: <include>: only meshes can be included, by <mesh><uri>"},
          {in_world("<model name='a'>\n<model name='b'/></model>"),

@@ -20,6 +20,7 @@ Json counters_json(const Counters& c) {
   return {
       {"boxes_renewed", c.boxes_renewed},
       {"pair_queries", n.queries},
+      {"pairs_unmoved", n.unmoved},
       {"pairs_skipped_by_motion_bound", n.motion_bound},
       {"pairs_skipped_by_cached_axis", n.cached_axis},
       {"pairs_gjk", n.gjk},

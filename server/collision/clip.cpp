@@ -6,13 +6,6 @@
 #include "collision/feature_name.h"
 
 namespace tumble {
-namespace {
-
-/// Signed distances closer than this [m] have no crossing worth computing.
-constexpr double kNoCrossing = 1e-12;
-
-}  // namespace
-
 void ClipPolygon::add_vertex(const Vec3& p, std::uint32_t vertex, std::uint32_t mark) {
   const std::uint32_t name = name_vertex(!reference_is_a_, vertex);
   Vertex& added = loops_[0][static_cast<std::size_t>(count_)];
@@ -70,7 +63,7 @@ void ClipPolygon::cut(const ClipSide& side, double tolerance) {
     if (inside) kept[n++] = vertex;
     if (inside != next_inside) {
       const double rise = next_distance - distance;
-      const bool crosses = distance * next_distance < 0.0 && std::abs(rise) > kNoCrossing;
+      const bool crosses = distance * next_distance < 0.0 && std::abs(rise) > ContactTolerance::kNoCrossing;
       if (crosses && n < kept.size()) {
         const Vec3 p = vertex.p + (distance / -rise) * (vertices[next].p - vertex.p);
         kept[n++] = {p,           name_meeting(vertex, side), vertex.tail, vertex.head, vertex.on_side,

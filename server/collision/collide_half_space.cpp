@@ -13,8 +13,8 @@ Vec3 middle_of_gap(const Vec3& p_A) {
 
 }  // namespace
 
-Manifold collide_half_space_sphere(const HalfSpace&, const Sphere& b, const Pose& X_AB, double margin) {
-  const Vec3 lowest = X_AB.p - Vec3(0, 0, b.radius);
+Manifold collide_half_space_sphere(const HalfSpace&, const Sphere& b, const Vec3& p_AB, double margin) {
+  const Vec3 lowest = p_AB - Vec3(0, 0, b.radius);
   return single_point(Vec3::UnitZ(), middle_of_gap(lowest), lowest.z(), margin, 0);
 }
 

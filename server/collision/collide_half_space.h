@@ -7,7 +7,7 @@
 
 namespace tumble {
 
-Manifold collide_half_space_sphere(const HalfSpace& a, const Sphere& b, const Pose& X_AB, double margin);
+Manifold collide_half_space_sphere(const HalfSpace& a, const Sphere& b, const Vec3& p_AB, double margin);
 Manifold collide_half_space_capsule(const HalfSpace& a, const Capsule& b, const Pose& X_AB, double margin);
 Manifold collide_half_space_box(const HalfSpace& a, const Box& b, const Pose& X_AB, double margin);
 Manifold collide_half_space_hull(const HalfSpace& a, const HullPointer& b, const Pose& X_AB, double margin);

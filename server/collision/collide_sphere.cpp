@@ -116,12 +116,12 @@ Manifold from_nearest(const Sphere& a, const Curved& b, Nearest (*nearest)(const
 
 }  // namespace
 
-Manifold collide_sphere_sphere(const Sphere& a, const Sphere& b, const Pose& X_AB, double margin) {
+Manifold collide_sphere_sphere(const Sphere& a, const Sphere& b, const Vec3& p_AB, double margin) {
   const double reach = a.radius + b.radius + margin;
-  const double distance2 = X_AB.p.squaredNorm();
+  const double distance2 = p_AB.squaredNorm();
   if (reach < 0.0 || distance2 > reach * reach) return {};
   const double distance = std::sqrt(distance2);
-  const Vec3 normal_A = distance > 0.0 ? Vec3(X_AB.p / distance) : Vec3(Vec3::UnitZ());
+  const Vec3 normal_A = distance > 0.0 ? Vec3(p_AB / distance) : Vec3(Vec3::UnitZ());
   return from_centre(a, normal_A, distance - b.radius, margin, 0);
 }
 

@@ -7,7 +7,7 @@
 
 namespace tumble {
 
-Manifold collide_sphere_sphere(const Sphere& a, const Sphere& b, const Pose& X_AB, double margin);
+Manifold collide_sphere_sphere(const Sphere& a, const Sphere& b, const Vec3& p_AB, double margin);
 Manifold collide_sphere_capsule(const Sphere& a, const Capsule& b, const Pose& X_AB, double margin);
 Manifold collide_sphere_box(const Sphere& a, const Box& b, const Pose& X_AB, double margin);
 Manifold collide_sphere_hull(const Sphere& a, const HullPointer& b, const Pose& X_AB, double margin);

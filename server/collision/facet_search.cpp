@@ -1,5 +1,5 @@
-// Exhaustive search with pruning. Any point of A with any point of B bounds the separation along a direction from above,
-// so two well chosen points of each body rule out nearly all facets of the other. Vectors without suffix are in A's frame.
+// A walk to a face that proves itself, else exhaustive search with pruning. Any point of A with any point of B bounds the
+// separation along a direction from above, so two well chosen points of each body rule out nearly all facets of the other. Vectors without suffix are in A's frame.
 #include "collision/facet_search.h"
 
 #include <array>
@@ -22,6 +22,8 @@ constexpr std::size_t kKeptFaces = 512;
 constexpr std::size_t kBlock = 128;
 /// From so many pairs of edges on it pays to look for a better point against each edge.
 constexpr std::size_t kManyPairs = 256;
+/// Of a walk between faces and corners; two or three are used.
+constexpr int kWalkRounds = 8;
 /// Larger indices are not remembered in the 32-bit feature: such hulls are searched without a seed.
 constexpr std::uint32_t kIndexBits = 15, kIndexLimit = 1u << kIndexBits;
 
@@ -44,6 +46,7 @@ using Block = std::array<EdgeArc, kBlock>;
 /// Heights of one point of the other body over every face of this one: upper bounds of what the faces separate.
 class PointHeights {
  public:
+  PointHeights() {}  // not defaulted: `{}` would clear thousands of bytes
   void measure(const Polytope& polytope, const Vec3& point) {
     polytope_ = &polytope;
     point_ = point;
@@ -61,32 +64,68 @@ class PointHeights {
   std::array<double, kKeptFaces> heights_;
 };
 
-/// One body and what is known of it: two points of the other one, measured over its faces.
-struct Side {
-  const Polytope& polytope;
-  PointHeights near, nearer;
+/// One body and what is known of it: up to two points of the other one, measured over its faces.
+class Side {
+ public:
+  explicit Side(const Polytope& body) : polytope(body) {}
 
-  double bound(std::size_t face) const { return std::min(near[face], nearer[face]); }
+  void measure(const Vec3& point) { points_[last_ = measured_++ % 2].measure(polytope, point); }
+  /// Over the faces, of the point that was measured last.
+  const PointHeights& heights() const { return points_[last_]; }
+  std::uint32_t nearest_face() const;
+  /// Largest height of that point over the other faces.
+  double highest_but(std::uint32_t face) const;
+  /// No face separates by more than this.
+  double bound(std::size_t face) const {
+    return measured_ < 2 ? points_[0][face] : std::min(points_[0][face], points_[1][face]);
+  }
   /// Along an arc between two normals the overlap with any one point of the other body is at least the smaller of its
   /// ends, as long as both are overlaps. False: no facet of this edge overlaps by less than `depth` >= 0.
   bool may_win(const ConvexHull::Edge& edge, double depth) const {
-    return std::max(near[edge.left_face], near[edge.right_face]) >= -depth &&
-           std::max(nearer[edge.left_face], nearer[edge.right_face]) >= -depth;
+    const auto reaches = [&](const PointHeights& heights) {
+      return std::max(heights[edge.left_face], heights[edge.right_face]) >= -depth;
+    };
+    return reaches(points_[0]) && (measured_ < 2 || reaches(points_[1]));
   }
-  std::uint32_t most_promising() const {
-    std::uint32_t best = 0;
-    for (std::uint32_t i = 1; i < polytope.faces.size(); ++i) {
-      if (near[i] > near[best]) best = i;
-    }
-    return best;
-  }
+
+  const Polytope& polytope;
+
+ private:
+  std::size_t measured_ = 0, last_ = 0;
+  std::array<PointHeights, 2> points_;
 };
+
+std::uint32_t Side::nearest_face() const {
+  std::uint32_t best = 0;
+  for (std::uint32_t i = 1; i < polytope.faces.size(); ++i) {
+    if (heights()[i] > heights()[best]) best = i;
+  }
+  return best;
+}
+
+double Side::highest_but(std::uint32_t face) const {
+  double highest = -kInfinity;
+  for (std::uint32_t i = 0; i < polytope.faces.size(); ++i) {
+    if (i != face) highest = std::max(highest, heights()[i]);
+  }
+  return highest;
+}
+
+/// How much higher than a corner, the lowest along d, all others are.
+double lead_of_corner(const Polytope& polytope, std::uint32_t lowest, const Vec3& d) {
+  double next = kInfinity;
+  for (std::uint32_t k = polytope.neighbour_offsets[lowest]; k < polytope.neighbour_offsets[lowest + 1];
+       ++k) {
+    next = std::min(next, d.dot(polytope.vertices[polytope.neighbours[k]]));
+  }
+  return next - d.dot(polytope.vertices[lowest]);
+}
 
 class FacetSearch {
  public:
   FacetSearch(const PolytopePair& pair, PairCache& cache)
-      : a_{pair.a, {}, {}},
-        b_{pair.b, {}, {}},
+      : a_(pair.a),
+        b_(pair.b),
         R_(pair.R_AB),
         p_(pair.p_AB),
         cache_(cache),
@@ -103,7 +142,13 @@ class FacetSearch {
 
  private:
   double separation_along(const Vec3& n);
+  Vec3 corner_of_b_in_a() const { return R_ * b_.polytope.vertices[cache_.vertex_B] + p_; }
+  Vec3 corner_of_a_in_b() const { return R_.transpose() * (a_.polytope.vertices[cache_.vertex_A] - p_); }
   void choose_points(const Facet& seed);
+  Facet walk_on_a();
+  Facet walk_on_b();
+  FacetAnswer prove_face_a(const Facet& facet) const;
+  FacetAnswer prove_face_b(const Facet& facet) const;
   void search_faces();
   void search_edges(double margin);
   void cross(const EdgeArc& a, const EdgeArc& b);
@@ -188,23 +233,61 @@ EdgeArc FacetSearch::arc_of_b(std::uint32_t i) const {
           -(R_ * b.faces[edge.right_face].normal), i};
 }
 
-/// The points that bound: each body's furthest along the seed's axis (else the last known one, else the centre line),
-/// then the furthest along the face that these leave as the best.
+/// The points that bound: each body's furthest along the seed's axis, else the last known one, else the centre line.
 void FacetSearch::choose_points(const Facet& seed) {
-  const auto point_in_b = [&] { return R_.transpose() * (a_.polytope.vertices[cache_.vertex_A] - p_); };
-  const auto point_in_a = [&] { return R_ * b_.polytope.vertices[cache_.vertex_B] + p_; };
   if (seed.kind == Facet::Kind::none) {
     separation_along(cache_.axis_A.squaredNorm() > 0.0 ? cache_.axis_A : p_);
   } else {
     separation_along(seed.normal_A);
     floor_ = seed.separation;
   }
-  a_.near.measure(a_.polytope, point_in_a());
-  b_.near.measure(b_.polytope, point_in_b());
-  const Facet of_a = face_a(a_.most_promising()), of_b = face_b(b_.most_promising());
-  floor_ = std::max({floor_, of_a.separation, of_b.separation});
-  a_.nearer.measure(a_.polytope, point_in_a());
-  b_.nearer.measure(b_.polytope, point_in_b());
+  a_.measure(corner_of_b_in_a());
+  b_.measure(corner_of_a_in_b());
+}
+
+/// The face nearest to B's corner, B's furthest corner behind that face, and so on until they agree.
+Facet FacetSearch::walk_on_a() {
+  for (int round = 0;; ++round) {
+    const std::uint32_t corner = cache_.vertex_B;
+    const Facet facet = face_a(a_.nearest_face());
+    floor_ = std::max(floor_, facet.separation);
+    if (cache_.vertex_B == corner) return facet;
+    a_.measure(corner_of_b_in_a());
+    if (round == kWalkRounds) return {};
+  }
+}
+
+Facet FacetSearch::walk_on_b() {
+  for (int round = 0;; ++round) {
+    const std::uint32_t corner = cache_.vertex_A;
+    const Facet facet = face_b(b_.nearest_face());
+    floor_ = std::max(floor_, facet.separation);
+    if (cache_.vertex_A == corner) return facet;
+    b_.measure(corner_of_a_in_b());
+    if (round == kWalkRounds) return {};
+  }
+}
+
+/// The end of a walk is a face of A and B's furthest corner behind it. Along any direction the bodies overlap by at least
+/// that corner's depth in A, or are no further apart than it is from A. If that is its height over the face, the
+/// face wins; and as long as the corner stays furthest and other faces lower than minus that height.
+FacetAnswer FacetSearch::prove_face_a(const Facet& facet) const {
+  if (facet.kind == Facet::Kind::none) return {};
+  const double lead = -std::abs(facet.separation) - a_.highest_but(facet.a) - 2.0 * tie_;
+  if (lead < 0.0) return {};
+  const double corner = lead_of_corner(b_.polytope, cache_.vertex_B, R_.transpose() * facet.normal_A);
+  return {facet, std::min(lead, corner)};
+}
+
+/// As the other way round; but of equal separations a face of A comes first.
+FacetAnswer FacetSearch::prove_face_b(const Facet& facet) const {
+  if (facet.kind == Facet::Kind::none) return {};
+  double lead = -std::abs(facet.separation) - b_.highest_but(facet.b) - 2.0 * tie_;
+  for (std::uint32_t i = 0; i < a_.polytope.faces.size() && lead >= 0.0; ++i) {
+    lead = std::min(lead, facet.separation - a_.bound(i) - 2.0 * tie_);
+  }
+  if (lead < 0.0) return {};
+  return {facet, std::min(lead, lead_of_corner(a_.polytope, cache_.vertex_A, -facet.normal_A))};
 }
 
 void FacetSearch::search_faces() {
@@ -318,6 +401,8 @@ double FacetSearch::clearance(const Facet& facet) const {
 
 FacetAnswer FacetSearch::search(double margin, const Facet& seed) {
   choose_points(seed);
+  if (const FacetAnswer proven = prove_face_a(walk_on_a()); proven.lead >= 0.0) return proven;
+  if (const FacetAnswer proven = prove_face_b(walk_on_b()); proven.lead >= 0.0) return proven;
   search_faces();
   if (best_.separation > margin) return {best_, -1.0};
   search_edges(margin);

@@ -22,6 +22,16 @@ struct ManifoldPoint {
 };
 
 struct Manifold {
+  Manifold() {}  // not defaulted: `{}` would clear points that are not there
+  Manifold(const Manifold& other) { *this = other; }
+  /// Copies the points that are there.
+  Manifold& operator=(const Manifold& other) {
+    normal_A = other.normal_A;
+    count = other.count;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) points[i] = other.points[i];
+    return *this;
+  }
+
   Vec3 normal_A = Vec3::UnitZ();  ///< Unit, from A to B, in A's frame.
   int count = 0;                  ///< 0: no point closer than the margin.
   std::array<ManifoldPoint, kMaxManifoldPoints> points;

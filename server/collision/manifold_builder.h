@@ -18,12 +18,30 @@ struct ContactTolerance {
   static ContactTolerance of(double width, bool face_to_face = true) {
     return {face_to_face ? std::min(1e-4, 1e-3 * width) : 0.0, std::min(1e-3, 1e-2 * width)};
   }
+  /// Signed distances closer than this [m] have no crossing worth computing.
+  static constexpr double kNoCrossing = 1e-12;
   /// Cosine of the angle between the contact normal and both faces of bodies that lie face to face: 0.01 rad.
   static constexpr double kFaceToFace = 1.0 - 5e-5;
   /// Cosine of 0.1 rad. Edges that cross under faces as flat as this to their axis lie in a contact of these faces: it
   /// keeps the faces\' whole polygon of points (a capsule: both ends), only measured along the edges\' axis.
   static constexpr double kFlat = 0.995;
 };
+
+/// Puts a point behind the first `count` and returns their new number, unless it is one with any of them. Of two merged
+/// points the deeper gives its place and depth, the first its name. It also keeps its place while the other is no deeper
+/// than a thousandth of their distance, so that rounding can't move it.
+inline int add_or_merge(ManifoldPoint* points, int count, double merge, const ManifoldPoint& point) {
+  constexpr double kDeeper = 1e-3;
+  for (int i = 0; i < count; ++i) {
+    ManifoldPoint& kept = points[i];
+    if ((kept.p_A - point.p_A).squaredNorm() >= merge * merge) continue;
+    if (point.separation < kept.separation - kDeeper * merge) kept.p_A = point.p_A;
+    kept.separation = std::min(kept.separation, point.separation);
+    return count;
+  }
+  points[count] = point;
+  return count + 1;
+}
 
 class ManifoldBuilder {
  public:
@@ -32,18 +50,8 @@ class ManifoldBuilder {
 
   void add(const Vec3& p_A, double separation, std::uint32_t feature) {
     if (!(separation <= margin_)) return;
-    // Of two merged points the deeper gives its place and depth, the first its name. It also keeps its place while the
-    // other is no deeper than this share of their distance, so that rounding can't move it.
-    constexpr double kDeeper = 1e-3;
-    for (int i = 0; i < count_; ++i) {
-      ManifoldPoint& kept = points_[static_cast<std::size_t>(i)];
-      if ((kept.p_A - p_A).squaredNorm() >= merge_ * merge_) continue;
-      if (separation < kept.separation - kDeeper * merge_) kept.p_A = p_A;
-      kept.separation = std::min(kept.separation, separation);
-      return;
-    }
     if (count_ == kCapacity) reduce();
-    points_[static_cast<std::size_t>(count_++)] = {p_A, separation, feature};
+    count_ = add_or_merge(points_.data(), count_, merge_, {p_A, separation, feature});
   }
   int count() const { return count_; }
   /// At most eight points: the deepest, then always the one furthest from those kept.

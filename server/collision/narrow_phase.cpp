@@ -3,7 +3,10 @@
 #include "collision/narrow_phase.h"
 
 #include <array>
+#include <cstring>
 #include <limits>
+#include <new>
+#include <type_traits>
 
 #include "collision/collide_box_box.h"
 #include "collision/collide_capsule.h"
@@ -23,14 +26,16 @@ namespace {
 /// where it is cheaper than they are: two boxes are told apart by fifteen axes in a quarter of its time, a capsule from a
 /// polytope by the faces' heights.
 struct PairFunction {
+  /// A closed form that asks only where B is, not how it is turned.
+  Manifold (*of_place)(const Shape&, const Shape&, const Vec3& p_AB, double margin) = nullptr;
   Manifold (*closed_form)(const Shape&, const Shape&, const Pose&, double margin) = nullptr;
   Manifold (*exact)(const Shape&, const Shape&, const Pose&, double margin, PairCache&) = nullptr;
   bool gjk_first = false;
 };
 
-template <auto function, typename A, typename B>
-Manifold unpack(const Shape& a, const Shape& b, const Pose& X_AB, double margin) {
-  return function(*std::get_if<A>(&a), *std::get_if<B>(&b), X_AB, margin);
+template <auto function, typename A, typename B, typename Place>
+Manifold unpack(const Shape& a, const Shape& b, const Place& place, double margin) {
+  return function(*std::get_if<A>(&a), *std::get_if<B>(&b), place, margin);
 }
 template <auto function, typename A, typename B>
 Manifold unpack(const Shape& a, const Shape& b, const Pose& X_AB, double margin, PairCache& cache) {
@@ -38,22 +43,26 @@ Manifold unpack(const Shape& a, const Shape& b, const Pose& X_AB, double margin,
 }
 
 template <auto function, typename A, typename B>
+constexpr PairFunction pair_function(Manifold (*)(const A&, const B&, const Vec3&, double)) {
+  return {.of_place = &unpack<function, A, B, Vec3>};
+}
+template <auto function, typename A, typename B>
 constexpr PairFunction pair_function(Manifold (*)(const A&, const B&, const Pose&, double)) {
-  return {&unpack<function, A, B>, nullptr, false};
+  return {.closed_form = &unpack<function, A, B, Pose>};
 }
 template <auto function, typename A, typename B>
 constexpr PairFunction pair_function(Manifold (*)(const A&, const B&, const Pose&, double, PairCache&)) {
-  return {nullptr, &unpack<function, A, B>, false};
+  return {.exact = &unpack<function, A, B>};
 }
 template <auto function>
 constexpr PairFunction by = pair_function<function>(function);
 
 template <auto function>
-constexpr PairFunction after_gjk = {nullptr, by<function>.exact, true};
+constexpr PairFunction after_gjk = {.exact = by<function>.exact, .gjk_first = true};
 
 constexpr PairFunction none;
-constexpr PairFunction curved{nullptr, collide_curved, true};
-constexpr PairFunction on_ground{collide_half_space_curved, nullptr, false};
+constexpr PairFunction curved{.exact = collide_curved, .gjk_first = true};
+constexpr PairFunction on_ground{.closed_form = collide_half_space_curved};
 
 // Rows: shape A, columns: shape B, both in the order of Shape's alternatives. Half-spaces never meet: they don't move.
 // clang-format off
@@ -76,6 +85,18 @@ double turned_by(const Quat& q, const Quat& q0) {
   return 2.0 * (q.coeffs() - sign * q0.coeffs()).norm();
 }
 
+/// Lets the result of `make` come into being in the manifold's place, so that nothing is copied.
+template <typename Make>
+void replace(Manifold& manifold, const Make& make) {
+  static_assert(std::is_trivially_destructible_v<Manifold>);
+  ::new (&manifold) Manifold(make());
+}
+
+template <typename Value>
+bool has_same_bits(const Value& value, const Value& other) {
+  return std::memcmp(&value, &other, sizeof value) == 0;
+}
+
 /// The early ends of the pipeline, for one pair of shapes in matrix order.
 class Query {
  public:
@@ -83,24 +104,37 @@ class Query {
         PairCache& cache, NarrowPhaseCounters& counters)
       : a_(a), b_(b), X_AB_(X_AB), margin_(margin), options_(options), cache_(cache), counters_(counters) {}
 
-  Manifold run(const PairFunction& function) {
+  /// False: the manifold of the last query still holds.
+  bool run(const PairFunction& function, Manifold& manifold) {
+    if (is_unmoved()) return ++counters_.unmoved, false;
+    manifold = Manifold();
     const bool was_near = cache_.axis_A.squaredNorm() > 0.0 && cache_.gap <= margin_;
-    if (stays_beyond_by_motion()) return ++counters_.motion_bound, Manifold{};
-    if (beyond_on_cached_axis()) return ++counters_.cached_axis, Manifold{};
-    if (options_.use_gjk && function.gjk_first && !was_near && beyond_by_gjk())
-      return ++counters_.gjk, Manifold{};
-    return find_exactly(function);
+    if (stays_beyond_by_motion()) {
+      ++counters_.motion_bound;
+    } else if (beyond_on_cached_axis()) {
+      ++counters_.cached_axis;
+    } else if (options_.use_gjk && function.gjk_first && !was_near && beyond_by_gjk()) {
+      ++counters_.gjk;
+    } else {
+      find_exactly(function, manifold);
+    }
+    return true;
   }
 
  private:
-  Manifold find_exactly(const PairFunction& function) {
+  bool is_unmoved() const {
+    return options_.use_kept_manifold && cache_.margin == margin_ && has_same_bits(X_AB_.p, cache_.p_AB) &&
+           has_same_bits(X_AB_.q, cache_.q_AB);
+  }
+
+  void find_exactly(const PairFunction& function, Manifold& manifold) {
     ++counters_.exact;
     if (!options_.use_cached_facet) cache_.slack = -1.0;
     if (cache_.slack >= 0.0) cache_.slack -= 4.0 * moved_by();
     if (cache_.slack >= 0.0) ++counters_.facet_kept;
-    Manifold manifold = function.exact(a_, b_, X_AB_, margin_, cache_);
+    replace(manifold, [&] { return function.exact(a_, b_, X_AB_, margin_, cache_); });
     remember_pose();
-    return manifold;
+    cache_.margin = margin_;
   }
 
   /// The gap changes exactly with the translation along the axis, and at most by the turn of B's furthest point.
@@ -147,6 +181,7 @@ class Query {
     cache_.axis_A = axis_A;
     cache_.gap = gap;
     cache_.slack = -1.0;
+    cache_.margin = std::numeric_limits<double>::quiet_NaN();
     remember_pose();
   }
   void remember_pose() {
@@ -162,13 +197,13 @@ class Query {
   NarrowPhaseCounters& counters_;
 };
 
-Manifold collide_in_order(const Shape& a, const Shape& b, const Pose& X_AB, double margin,
-                          const NarrowPhaseOptions& options, PairCache& cache, NarrowPhaseCounters& counters,
-                          std::uint32_t part) {
-  const PairFunction& function = kMatrix[a.index()][b.index()];
-  if (function.exact != nullptr) return Query(a, b, X_AB, margin, options, cache, counters).run(function);
-  ++counters.closed_form;
-  if (function.closed_form != nullptr) return function.closed_form(a, b, X_AB, margin);
+/// B's origin in A.
+Vec3 relative_place(const Pose& X_WA, const Pose& X_WB) {
+  return X_WA.q.conjugate() * (X_WB.p - X_WA.p);
+}
+
+Manifold collide_with_surface(const Shape& a, const Shape& b, const Pose& X_AB, double margin,
+                              NarrowPhaseCounters& counters, std::uint32_t part) {
   const TriangleSurface* surface = surface_of(b);
   if (surface == nullptr) return {};
   ++counters.triangles;
@@ -196,21 +231,47 @@ void swap_shapes(Manifold& manifold, const Pose& X_AB) {
   }
 }
 
-Manifold collide(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB, double margin,
-                 const NarrowPhaseOptions& options, PairCache& cache, NarrowPhaseCounters& counters,
-                 std::uint32_t part) {
+void update_manifold(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB, double margin,
+                     const NarrowPhaseOptions& options, PairCache& cache, NarrowPhaseCounters& counters,
+                     Manifold& manifold, std::uint32_t part) {
   ++counters.queries;
   const bool backwards = runs_backwards(a, X_WA, b, X_WB, cache);
   const Shape &first = backwards ? b : a, &second = backwards ? a : b;
-  const Pose X_12 = backwards ? relative_pose(X_WB, X_WA) : relative_pose(X_WA, X_WB);
-  Manifold manifold = collide_in_order(first, second, X_12, margin, options, cache, counters, part);
+  const Pose &X_W1 = backwards ? X_WB : X_WA, &X_W2 = backwards ? X_WA : X_WB;
+  const PairFunction& function = kMatrix[first.index()][second.index()];
+  if (function.of_place != nullptr) {
+    ++counters.closed_form;
+    replace(manifold, [&] { return function.of_place(first, second, relative_place(X_W1, X_W2), margin); });
+    if (backwards && manifold.count > 0) swap_shapes(manifold, relative_pose(X_W1, X_W2));
+    return;
+  }
+  const Pose X_12 = relative_pose(X_W1, X_W2);
+  if (function.exact != nullptr) {
+    Query query(first, second, X_12, margin, options, cache, counters);
+    if (!query.run(function, manifold)) return;
+  } else {
+    ++counters.closed_form;
+    replace(manifold, [&] {
+      return function.closed_form != nullptr
+                 ? function.closed_form(first, second, X_12, margin)
+                 : collide_with_surface(first, second, X_12, margin, counters, part);
+    });
+  }
   if (backwards) swap_shapes(manifold, X_12);
+}
+
+Manifold collide(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB, double margin,
+                 const NarrowPhaseOptions& options, PairCache& cache, NarrowPhaseCounters& counters,
+                 std::uint32_t part) {
+  NarrowPhaseOptions keeping_nothing = options;
+  keeping_nothing.use_kept_manifold = false;
+  Manifold manifold;
+  update_manifold(a, X_WA, b, X_WB, margin, keeping_nothing, cache, counters, manifold, part);
   return manifold;
 }
 
 Pose relative_pose(const Pose& X_WA, const Pose& X_WB) {
-  const Quat q_AW = X_WA.q.conjugate();
-  return {q_AW * X_WB.q, q_AW * (X_WB.p - X_WA.p)};
+  return {X_WA.q.conjugate() * X_WB.q, relative_place(X_WA, X_WB)};
 }
 
 }  // namespace tumble

@@ -14,6 +14,7 @@ template <class OptionsType, class Visit>
 void for_each_option(OptionsType& options, Visit&& visit) {
   visit("contact_margin", options.contact_margin);
   visit("fat_margin", options.fat_margin);
+  visit("use_kept_manifold", options.narrow_phase.use_kept_manifold);
   visit("use_motion_bound", options.narrow_phase.use_motion_bound);
   visit("use_cached_axis", options.narrow_phase.use_cached_axis);
   visit("use_gjk", options.narrow_phase.use_gjk);

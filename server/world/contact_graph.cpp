@@ -51,19 +51,36 @@ int match(const Manifold& old_manifold, const ManifoldPoint& point, double reach
   return best;
 }
 
-}  // namespace
+bool have_same_features(const Manifold& manifold, const Manifold& other) {
+  if (manifold.count != other.count) return false;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(manifold.count); ++i) {
+    if (manifold.points[i].feature != other.points[i].feature) return false;
+  }
+  return true;
+}
 
-void transport_impulses(const Manifold& old_manifold, const Impulses& old_impulse, const Manifold& manifold,
-                        const Vec3& normal_W, double reach, Impulses& impulse) {
+void rearrange(const Manifold& old_manifold, const Manifold& manifold, double reach, Impulses& impulse) {
+  const Impulses old_impulse = impulse;
   std::array<bool, kMaxManifoldPoints> used{};
   for (int i = 0; i < manifold.count; ++i) {
     const auto point = static_cast<std::size_t>(i);
-    impulse[point].setZero();
     const int from = match(old_manifold, manifold.points[point], reach, used);
-    if (from < 0) continue;
-    used[static_cast<std::size_t>(from)] = true;
-    const Vec3& carried = old_impulse[static_cast<std::size_t>(from)];
-    if (carried.dot(normal_W) > 0.0) impulse[point] = carried;
+    if (from < 0) {
+      impulse[point].setZero();
+    } else {
+      used[static_cast<std::size_t>(from)] = true;
+      impulse[point] = old_impulse[static_cast<std::size_t>(from)];
+    }
+  }
+}
+
+}  // namespace
+
+void transport_impulses(const Manifold& old_manifold, const Manifold& manifold, const Vec3& normal_W,
+                        double reach, Impulses& impulse) {
+  if (!have_same_features(old_manifold, manifold)) rearrange(old_manifold, manifold, reach, impulse);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(manifold.count); ++i) {
+    if (!(impulse[i].dot(normal_W) > 0.0)) impulse[i].setZero();
   }
 }
 

@@ -53,8 +53,7 @@ class ContactGraph {
 
 /// Carries impulses from the old manifold's points to the new ones: same feature first, else the nearest old point
 /// within `reach` [m], each used once; impulses that would pull are dropped.
-void transport_impulses(const Manifold& old_manifold, const std::array<Vec3, kMaxManifoldPoints>& old_impulse,
-                        const Manifold& manifold, const Vec3& normal_W, double reach,
-                        std::array<Vec3, kMaxManifoldPoints>& impulse);
+void transport_impulses(const Manifold& old_manifold, const Manifold& manifold, const Vec3& normal_W,
+                        double reach, std::array<Vec3, kMaxManifoldPoints>& impulse);
 
 }  // namespace tumble

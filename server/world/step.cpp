@@ -203,15 +203,13 @@ void World::update_contacts(const StepContext& step) {
     const Geometry& b = geometries_[contact.pair.b];
     const Manifold old_manifold = contact.manifold;
     const Pose X_WA = geometry_pose(a);
-    contact.manifold =
-        collide(a.shape, X_WA, b.shape, geometry_pose(b), pair_margin(contact, step.h), options_.narrow_phase,
-                contact.cache, counters_.narrow_phase, contact.pair.part);
+    update_manifold(a.shape, X_WA, b.shape, geometry_pose(b), pair_margin(contact, step.h),
+                    options_.narrow_phase, contact.cache, counters_.narrow_phase, contact.manifold,
+                    contact.pair.part);
     contact.normal_W = X_WA.q * contact.manifold.normal_A;
     if (contact.pair.part > 0) drop_repeated_points(contacts_.all(), index);
     if (contact.manifold.count == 0) continue;
-    const auto old_impulse = contact.impulse;
-    transport_impulses(old_manifold, old_impulse, contact.manifold, contact.normal_W, a.contact_margin,
-                       contact.impulse);
+    transport_impulses(old_manifold, contact.manifold, contact.normal_W, a.contact_margin, contact.impulse);
     wake_slot(contact.body_a);
     wake_slot(contact.body_b);
   }

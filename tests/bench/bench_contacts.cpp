@@ -1,6 +1,9 @@
 // What one query of the narrow phase costs, beside plain libccd's penetration queries and, for boxes, Bullet's and ODE's
-// box-box functions on the same pairs, all in double precision. 512 poses a class; "cold" forgets the pair before each
-// query, "warm" keeps each pair's memory while nothing moves, "coherent" while B moves a little with every query.
+// box-box functions on the same pairs, all in double precision, from the pose of B as quaternion and position to the
+// contact. 512 pairs a class. "cold" forgets the pair before each query; the others keep each pair's memory, while
+// nothing moves or, where a pace is given, while B moves a little with every query.
+// `--queries=N` runs every benchmark exactly so often: two such runs under callgrind differ by the instructions of the
+// queries between them (run_benchmarks.py).
 #include <BulletCollision/CollisionDispatch/btBoxBoxDetector.h>
 #include <BulletCollision/CollisionShapes/btBoxShape.h>
 #include <benchmark/benchmark.h>
@@ -10,6 +13,7 @@
 #include <array>
 #include <random>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "collision/narrow_phase.h"
@@ -51,6 +55,14 @@ Pair rest_on_top(Source& source, const Shape& a, double top, const Shape& b, con
   return {a, b, X_WA, X_WA * Pose{q, Vec3(0.1, 0.05, top + height - depth)}};
 }
 
+/// Two shapes that touch along a random direction, with `depth` [m] of overlap.
+Pair touching(Source& source, const Shape& a, const Shape& b, double depth) {
+  const Quat q = source.rotation();
+  const Vec3 n = source.vector(-1.0, 1.0).normalized();
+  const Vec3 p = support(a, n) - q * support(b, q.conjugate() * -n) - depth * n;
+  const Pose X_WA{source.rotation(), source.vector(-10.0, 10.0)};
+  return {a, b, X_WA, X_WA * Pose{q, p}};
+}
 Pair box_face(Source& source) {
   const Box a{source.vector(0.3, 1.0)}, b{source.vector(0.3, 1.0)};
   const double yaw = source.uniform(-1.0, 1.0);
@@ -75,6 +87,18 @@ Pair box_deep(Source& source) {
   return {a, b, X_WA, X_WA * X_AB};
 }
 
+Pair box_pair(Source& source, double depth) {
+  const Box a{source.vector(0.3, 1.0)}, b{source.vector(0.3, 1.0)};
+  return touching(source, a, b, depth);
+}
+/// About as often apart as not.
+Pair box_pass(Source& source) {
+  return box_pair(source, source.uniform(-0.05, 0.02));
+}
+Pair box_apart(Source& source) {
+  return box_pair(source, -0.05);
+}
+
 Pair sphere_sphere(Source& source) {
   const Pose X_WA{Quat::Identity(), source.vector(-10.0, 10.0)};
   const Vec3 d = source.vector(-1.0, 1.0).normalized();
@@ -90,17 +114,16 @@ HullPointer hull32(Source& source) {
 
 Pair hull_pair(Source& source, double depth) {
   static const HullPointer hull = hull32(source);
-  const Quat q = source.rotation();
-  const Vec3 n = source.vector(-1.0, 1.0).normalized();
-  const Vec3 p = support(hull, n) - q * support(hull, q.conjugate() * -n) - depth * n;
-  const Pose X_WA{source.rotation(), source.vector(-10.0, 10.0)};
-  return {hull, hull, X_WA, X_WA * Pose{q, p}};
+  return touching(source, hull, hull, depth);
 }
 Pair hull_shallow(Source& source) {
   return hull_pair(source, 1e-3);
 }
 Pair hull_deep(Source& source) {
   return hull_pair(source, 0.1);
+}
+Pair hull_apart(Source& source) {
+  return hull_pair(source, -0.05);
 }
 
 /// A vertex of B lies in the middle of a face of A, 0.1 mm deep.
@@ -120,14 +143,6 @@ Pair hull_pass(Source& source) {
   return hull_pair(source, source.uniform(-0.05, 0.02));
 }
 
-/// Two shapes that touch along a random direction, and `depth` [m] of overlap.
-Pair touching(Source& source, const Shape& a, const Shape& b, double depth) {
-  const Quat q = source.rotation();
-  const Vec3 n = source.vector(-1.0, 1.0).normalized();
-  const Vec3 p = support(a, n) - q * support(b, q.conjugate() * -n) - depth * n;
-  const Pose X_WA{source.rotation(), source.vector(-10.0, 10.0)};
-  return {a, b, X_WA, X_WA * Pose{q, p}};
-}
 const Box kBox{Vec3(0.5, 0.4, 0.3)};
 const Cylinder kCylinder{0.4, 0.5};
 const Cone kCone{0.4, 0.5};
@@ -160,60 +175,85 @@ Pair sphere_ellipsoid(Source& source) {
 
 using Make = Pair (*)(Source&);
 
-std::vector<Pair> make_pairs(Make make) {
-  Source source;
-  std::vector<Pair> pairs;
-  for (int i = 0; i < 512; ++i) pairs.push_back(make(source));
-  return pairs;
-}
+/// Pairs and the way of each B: with every step it has moved by about `pace` [m] and [rad], to and fro along one direction
+/// for 64 steps each.
+class Trace {
+ public:
+  static constexpr std::size_t kPairs = 512;
 
-void tumble_contacts(benchmark::State& state, Make make, bool keep_memory) {
-  const std::vector<Pair> pairs = make_pairs(make);
-  std::vector<PairCache> caches(pairs.size());
+  Trace(Make make, double pace) : turns_(pace > 0.0 ? 64 : 1) {
+    Source source;
+    for (std::size_t i = 0; i < kPairs; ++i) pairs_.push_back(make(source));
+    std::vector<Pair> now = pairs_;
+    for (std::size_t i = 0; i < kPairs; ++i) {
+      shift_.push_back(source.vector(-pace, pace));
+      turn_.push_back(exp_map(source.vector(-pace, pace)));
+    }
+    for (std::size_t step = 0; step < turns_; ++step) {
+      for (std::size_t i = 0; i < kPairs; ++i) {
+        X_WB_.push_back(now[i].X_WB);
+        now[i].X_WB = {normalized(turn_[i] * now[i].X_WB.q), now[i].X_WB.p + shift_[i]};
+      }
+    }
+  }
+
+  const std::vector<Pair>& pairs() const { return pairs_; }
+  /// Goes on to the next pair or, after the last, to the first a step later.
+  void advance() {
+    if (++pair_ < kPairs) return;
+    pair_ = 0;
+    step_ = (step_ + 1) % (2 * turns_);
+  }
+  std::size_t index() const { return pair_; }
+  const Pair& pair() const { return pairs_[pair_]; }
+  const Pose& X_WB() const { return X_WB_[std::min(step_, 2 * turns_ - 1 - step_) * kPairs + pair_]; }
+
+ private:
+  std::size_t turns_, pair_ = 0, step_ = 0;
+  std::vector<Pair> pairs_;
+  std::vector<Vec3> shift_;
+  std::vector<Quat> turn_;
+  std::vector<Pose> X_WB_;  // step by step
+};
+
+void tumble_cold(benchmark::State& state, Make make, double pace) {
+  Trace trace(make, pace);
   NarrowPhaseCounters counters;
-  std::size_t i = 0;
   std::uint64_t points = 0;
+  Manifold manifold;
   for (auto _ : state) {
-    const Pair& pair = pairs[i];
+    const Pair& pair = trace.pair();
     PairCache cold;
-    const Manifold m =
-        collide(pair.a, pair.X_WA, pair.b, pair.X_WB, 0.0, {}, keep_memory ? caches[i] : cold, counters);
-    points += static_cast<std::uint64_t>(m.count);
-    benchmark::DoNotOptimize(m.normal_A);
-    i = (i + 1) % pairs.size();
+    update_manifold(pair.a, pair.X_WA, pair.b, trace.X_WB(), 0.0, {}, cold, counters, manifold);
+    points += static_cast<std::uint64_t>(manifold.count);
+    benchmark::DoNotOptimize(manifold);
+    trace.advance();
   }
   state.counters["points"] = static_cast<double>(points) / static_cast<double>(state.iterations());
 }
 
-/// B wanders: each query has moved it by about `pace` [m] and [rad], to and fro along one direction for 64 queries each.
-void tumble_coherent(benchmark::State& state, Make make, double pace) {
-  constexpr std::size_t kSteps = 64;
-  const std::vector<Pair> pairs = make_pairs(make);
-  std::vector<std::vector<Pose>> paths;
-  Source source;
-  for (const Pair& pair : pairs) {
-    const Vec3 shift = source.vector(-pace, pace);
-    const Quat turn = exp_map(source.vector(-pace, pace));
-    std::vector<Pose> path = {pair.X_WB};
-    while (path.size() < kSteps) path.push_back({normalized(turn * path.back().q), path.back().p + shift});
-    for (std::size_t i = kSteps; i-- > 0;) path.push_back(path[i]);
-    paths.push_back(path);
-  }
-  std::vector<PairCache> caches(pairs.size());
+void tumble_kept(benchmark::State& state, Make make, double pace, const NarrowPhaseOptions& options) {
+  Trace trace(make, pace);
+  std::vector<PairCache> caches(Trace::kPairs);
+  std::vector<Manifold> manifolds(Trace::kPairs);
   NarrowPhaseCounters counters;
-  std::size_t i = 0, step = 0;
   for (auto _ : state) {
-    const Pair& pair = pairs[i];
-    const Manifold m = collide(pair.a, pair.X_WA, pair.b, paths[i][step], 0.0, {}, caches[i], counters);
-    benchmark::DoNotOptimize(m.normal_A);
-    if (++i == pairs.size()) i = 0, step = (step + 1) % (2 * kSteps);
+    const Pair& pair = trace.pair();
+    Manifold& manifold = manifolds[trace.index()];
+    update_manifold(pair.a, pair.X_WA, pair.b, trace.X_WB(), 0.0, options, caches[trace.index()], counters,
+                    manifold);
+    benchmark::DoNotOptimize(manifold);
+    trace.advance();
   }
-  const double queries = static_cast<double>(counters.queries);
-  state.counters["by_motion"] = static_cast<double>(counters.motion_bound) / queries;
-  state.counters["by_axis"] = static_cast<double>(counters.cached_axis) / queries;
-  state.counters["by_gjk"] = static_cast<double>(counters.gjk) / queries;
-  state.counters["exact"] = static_cast<double>(counters.exact) / queries;
-  state.counters["facet_kept"] = static_cast<double>(counters.facet_kept) / queries;
+  const auto share = [&](std::uint64_t count) {
+    return static_cast<double>(count) / static_cast<double>(counters.queries);
+  };
+  state.counters["unmoved"] = share(counters.unmoved);
+  state.counters["by_motion"] = share(counters.motion_bound);
+  state.counters["by_axis"] = share(counters.cached_axis);
+  state.counters["by_gjk"] = share(counters.gjk);
+  state.counters["exact"] = share(counters.exact);
+  state.counters["facet_kept"] = share(counters.facet_kept);
 }
 
 struct BulletPoints : btDiscreteCollisionDetectorInterface::Result {
@@ -226,70 +266,79 @@ struct BulletPoints : btDiscreteCollisionDetectorInterface::Result {
 btTransform to_bullet(const Pose& X) {
   return btTransform(btQuaternion(X.q.x(), X.q.y(), X.q.z(), X.q.w()), btVector3(X.p.x(), X.p.y(), X.p.z()));
 }
+btBoxShape to_bullet(const Shape& shape) {
+  const Vec3& h = std::get_if<Box>(&shape)->half_extents;
+  return btBoxShape(btVector3(h.x(), h.y(), h.z()));
+}
 
-void bullet_boxes(benchmark::State& state, Make make) {
-  const std::vector<Pair> pairs = make_pairs(make);
+void bullet_boxes(benchmark::State& state, Make make, double pace) {
+  Trace trace(make, pace);
   std::vector<btBoxShape> a, b;
   std::vector<btDiscreteCollisionDetectorInterface::ClosestPointInput> inputs;
-  for (const Pair& pair : pairs) {
-    const Vec3 &ha = std::get_if<Box>(&pair.a)->half_extents, &hb = std::get_if<Box>(&pair.b)->half_extents;
-    a.emplace_back(btVector3(ha.x(), ha.y(), ha.z()));
-    b.emplace_back(btVector3(hb.x(), hb.y(), hb.z()));
+  for (const Pair& pair : trace.pairs()) {
+    a.push_back(to_bullet(pair.a));
+    b.push_back(to_bullet(pair.b));
     inputs.emplace_back();
     inputs.back().m_transformA = to_bullet(pair.X_WA);
-    inputs.back().m_transformB = to_bullet(pair.X_WB);
   }
   BulletPoints points;
-  std::size_t i = 0;
   for (auto _ : state) {
+    const std::size_t i = trace.index();
+    inputs[i].m_transformB = to_bullet(trace.X_WB());
     btBoxBoxDetector detector(&a[i], &b[i]);
     detector.getClosestPoints(inputs[i], points, nullptr);
     benchmark::DoNotOptimize(points.count);
-    i = (i + 1) % pairs.size();
+    trace.advance();
   }
   state.counters["points"] = static_cast<double>(points.count) / static_cast<double>(state.iterations());
 }
 
-struct OdeBox {
-  dVector3 position, side;
-  dMatrix3 rotation;
+struct OdePlace {
+  explicit OdePlace(const Pose& X) : position{X.p.x(), X.p.y(), X.p.z()} {
+    const Mat3 R = rotation_matrix(X.q);
+    for (int i = 0; i < 3; ++i) {
+      for (int j = 0; j < 3; ++j) rotation[4 * i + j] = R(i, j);
+    }
+  }
+  dVector3 position;
+  dMatrix3 rotation{};
+};
+struct OdeSides {
+  explicit OdeSides(const Shape& shape) {
+    for (int i = 0; i < 3; ++i) sides[i] = 2.0 * std::get_if<Box>(&shape)->half_extents[i];
+  }
+  dVector3 sides;
 };
 
-OdeBox to_ode(const Shape& shape, const Pose& X) {
-  OdeBox box{};
-  const Mat3 R = rotation_matrix(X.q);
-  for (int i = 0; i < 3; ++i) {
-    box.position[i] = X.p[i];
-    box.side[i] = 2.0 * std::get_if<Box>(&shape)->half_extents[i];
-    for (int j = 0; j < 3; ++j) box.rotation[4 * i + j] = R(i, j);
-  }
-  return box;
-}
-
-void ode_boxes(benchmark::State& state, Make make) {
-  std::vector<OdeBox> a, b;
-  for (const Pair& pair : make_pairs(make)) {
-    a.push_back(to_ode(pair.a, pair.X_WA));
-    b.push_back(to_ode(pair.b, pair.X_WB));
+void ode_boxes(benchmark::State& state, Make make, double pace) {
+  Trace trace(make, pace);
+  std::vector<OdePlace> place_a;
+  std::vector<OdeSides> a, b;
+  for (const Pair& pair : trace.pairs()) {
+    place_a.emplace_back(pair.X_WA);
+    a.emplace_back(pair.a);
+    b.emplace_back(pair.b);
   }
   std::array<dContactGeom, 8> contacts;
-  std::size_t i = 0;
   std::uint64_t points = 0;
   for (auto _ : state) {
+    const std::size_t i = trace.index();
+    const OdePlace place_b(trace.X_WB());
     dVector3 normal;
     dReal depth = 0;
     int axis = 0;
-    points += static_cast<std::uint64_t>(dBoxBox(a[i].position, a[i].rotation, a[i].side, b[i].position,
-                                                 b[i].rotation, b[i].side, normal, &depth, &axis, 8,
-                                                 contacts.data(), sizeof(dContactGeom)));
+    points += static_cast<std::uint64_t>(dBoxBox(place_a[i].position, place_a[i].rotation, a[i].sides,
+                                                 place_b.position, place_b.rotation, b[i].sides, normal,
+                                                 &depth, &axis, 8, contacts.data(), sizeof(dContactGeom)));
     benchmark::DoNotOptimize(contacts);
-    i = (i + 1) % a.size();
+    trace.advance();
   }
   state.counters["points"] = static_cast<double>(points) / static_cast<double>(state.iterations());
 }
 
 struct PlacedShape {
-  const Shape* shape;
+  PlacedShape(const Shape& placed, const Pose& X) : shape(placed), R(rotation_matrix(X.q)), p(X.p) {}
+  const Shape& shape;
   Mat3 R;
   Vec3 p;
 };
@@ -297,7 +346,7 @@ struct PlacedShape {
 void ccd_support(const void* object, const ccd_vec3_t* direction, ccd_vec3_t* out) {
   const PlacedShape& placed = *static_cast<const PlacedShape*>(object);
   const Vec3 d(direction->v[0], direction->v[1], direction->v[2]);
-  const Vec3 v = placed.R * support(*placed.shape, placed.R.transpose() * d) + placed.p;
+  const Vec3 v = placed.R * support(placed.shape, placed.R.transpose() * d) + placed.p;
   ccdVec3Set(out, v.x(), v.y(), v.z());
 }
 void ccd_centre(const void* object, ccd_vec3_t* out) {
@@ -306,58 +355,103 @@ void ccd_centre(const void* object, ccd_vec3_t* out) {
 }
 
 /// Default tolerances; the iteration limit keeps touching pairs from cycling for ever.
-void plain_libccd(benchmark::State& state, Make make, bool mpr) {
-  const std::vector<Pair> pairs = make_pairs(make);
+void plain_libccd(benchmark::State& state, Make make, double pace, bool mpr) {
+  Trace trace(make, pace);
+  std::vector<PlacedShape> placed_a;
+  for (const Pair& pair : trace.pairs()) placed_a.emplace_back(pair.a, pair.X_WA);
   ccd_t ccd;
   CCD_INIT(&ccd);
   ccd.support1 = ccd.support2 = ccd_support;
   ccd.center1 = ccd.center2 = ccd_centre;
   ccd.max_iterations = 500;
-  std::size_t i = 0;
   for (auto _ : state) {
-    const Pair& pair = pairs[i];
-    const PlacedShape a{&pair.a, rotation_matrix(pair.X_WA.q), pair.X_WA.p};
-    const PlacedShape b{&pair.b, rotation_matrix(pair.X_WB.q), pair.X_WB.p};
+    const PlacedShape& a = placed_a[trace.index()];
+    const PlacedShape b(trace.pair().b, trace.X_WB());
     ccd_real_t depth = 0;
     ccd_vec3_t normal, position;
     benchmark::DoNotOptimize(mpr ? ccdMPRPenetration(&a, &b, &ccd, &depth, &normal, &position)
                                  : ccdGJKPenetration(&a, &b, &ccd, &depth, &normal, &position));
     benchmark::DoNotOptimize(depth);
-    i = (i + 1) % pairs.size();
+    trace.advance();
   }
 }
 
-void add_class(const std::string& name, Make make, bool boxes = false) {
-  benchmark::RegisterBenchmark((name + "/tumble_cold").c_str(), tumble_contacts, make, false);
-  benchmark::RegisterBenchmark((name + "/tumble_warm").c_str(), tumble_contacts, make, true);
-  benchmark::RegisterBenchmark((name + "/ccdGJKPenetration").c_str(), plain_libccd, make, false);
-  benchmark::RegisterBenchmark((name + "/ccdMPRPenetration").c_str(), plain_libccd, make, true);
-  if (!boxes) return;
-  benchmark::RegisterBenchmark((name + "/bullet").c_str(), bullet_boxes, make);
-  benchmark::RegisterBenchmark((name + "/ode").c_str(), ode_boxes, make);
+class Registry {
+ public:
+  explicit Registry(std::int64_t queries) : queries_(queries) {}
+
+  template <typename... Arguments>
+  void add(const std::string& name, Arguments... arguments) {
+    auto* const benchmark = benchmark::RegisterBenchmark(name.c_str(), arguments...);
+    if (queries_ > 0) benchmark->Iterations(queries_);
+  }
+  /// Where nothing moves, every query forgets the pair.
+  void add_class(const std::string& name, Make make, double pace = 0.0) {
+    if (pace > 0.0) {
+      add(name + "/tumble", tumble_kept, make, pace, NarrowPhaseOptions{});
+    } else {
+      add(name + "/tumble_cold", tumble_cold, make, pace);
+    }
+    add(name + "/ccdGJKPenetration", plain_libccd, make, pace, false);
+    add(name + "/ccdMPRPenetration", plain_libccd, make, pace, true);
+  }
+  void add_boxes(const std::string& name, Make make, double pace = 0.0) {
+    add_class(name, make, pace);
+    add(name + "/bullet", bullet_boxes, make, pace);
+    add(name + "/ode", ode_boxes, make, pace);
+  }
+
+ private:
+  std::int64_t queries_;
+};
+
+void register_polytopes(Registry& registry) {
+  NarrowPhaseOptions no_motion_bound, no_kept_manifold;
+  no_motion_bound.use_motion_bound = false;
+  no_kept_manifold.use_kept_manifold = false;
+  registry.add_boxes("box_face", box_face);
+  registry.add_boxes("box_edge", box_edge);
+  registry.add_boxes("box_deep", box_deep);
+  registry.add_boxes("box_resting", box_face, 1e-6);
+  registry.add_boxes("box_moving", box_pass, 2e-3);
+  registry.add("box_face/tumble_unmoved", tumble_kept, box_face, 0.0, NarrowPhaseOptions{});
+  registry.add("box_apart/tumble_motion_bound", tumble_kept, box_apart, 1e-6, NarrowPhaseOptions{});
+  registry.add("box_apart/tumble_cached_axis", tumble_kept, box_apart, 1e-6, no_motion_bound);
+  registry.add_class("hull32_shallow", hull_shallow);
+  registry.add_class("hull32_deep", hull_deep);
+  registry.add_class("hull32_resting", hull_rest, 1e-7);
+  registry.add_class("hull32_moving", hull_pass, 2e-3);
+  registry.add("hull32_shallow/tumble_facet_kept", tumble_kept, hull_shallow, 0.0, no_kept_manifold);
+  registry.add("hull32_apart/tumble_motion_bound", tumble_kept, hull_apart, 1e-6, NarrowPhaseOptions{});
+  registry.add("hull32_apart/tumble_cached_axis", tumble_kept, hull_apart, 1e-6, no_motion_bound);
+}
+
+void register_curved(Registry& registry) {
+  registry.add_class("sphere_sphere", sphere_sphere);
+  registry.add_class("cylinder_on_box", cylinder_on_box);
+  registry.add_class("cylinder_resting", cylinder_on_box, 1e-6);
+  registry.add_class("box_cylinder", box_cylinder);
+  registry.add_class("box_cylinder_deep", box_cylinder_deep);
+  registry.add_class("cylinder_cylinder", cylinder_cylinder);
+  registry.add_class("cone_cylinder", cone_cylinder);
+  registry.add_class("ellipsoid_ellipsoid", ellipsoid_ellipsoid);
+  registry.add_class("ellipsoid_ellipsoid_deep", ellipsoid_ellipsoid_deep);
+  registry.add_class("sphere_ellipsoid", sphere_ellipsoid);
+}
+
+/// Takes `--queries=N` out of the arguments; 0 if it is not there.
+std::int64_t take_queries(int& argc, char** argv) {
+  constexpr std::string_view kOption = "--queries=";
+  if (argc < 2 || !std::string_view(argv[argc - 1]).starts_with(kOption)) return 0;
+  return std::stoll(argv[--argc] + kOption.size());
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  add_class("box_face", box_face, true);
-  add_class("box_edge", box_edge, true);
-  add_class("box_deep", box_deep, true);
-  add_class("sphere_sphere", sphere_sphere);
-  add_class("hull32_shallow", hull_shallow);
-  add_class("hull32_deep", hull_deep);
-  benchmark::RegisterBenchmark("box_resting/tumble_coherent", tumble_coherent, box_face, 1e-6);
-  benchmark::RegisterBenchmark("hull32_resting/tumble_coherent", tumble_coherent, hull_rest, 1e-7);
-  benchmark::RegisterBenchmark("hull32_moving/tumble_coherent", tumble_coherent, hull_pass, 2e-3);
-  add_class("cylinder_on_box", cylinder_on_box);
-  add_class("box_cylinder", box_cylinder);
-  add_class("box_cylinder_deep", box_cylinder_deep);
-  add_class("cylinder_cylinder", cylinder_cylinder);
-  add_class("cone_cylinder", cone_cylinder);
-  add_class("ellipsoid_ellipsoid", ellipsoid_ellipsoid);
-  add_class("ellipsoid_ellipsoid_deep", ellipsoid_ellipsoid_deep);
-  add_class("sphere_ellipsoid", sphere_ellipsoid);
-  benchmark::RegisterBenchmark("cylinder_resting/tumble_coherent", tumble_coherent, cylinder_on_box, 1e-6);
+  Registry registry(take_queries(argc, argv));
+  register_polytopes(registry);
+  register_curved(registry);
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
   benchmark::RunSpecifiedBenchmarks();

@@ -3,15 +3,18 @@
 
     run_benchmarks.py BUILD [NAME...]     all programs bench_*, or those named (`step` or `bench_step`)
 
-`stream` is stream.py, run in a network namespace of its own. Beside bench_NAME a program NAME_accuracy may print a
-Markdown table of its own; its first argument is the share of its full size to run, TUMBLE_SHARE or 0.001. A script
-NAME_curves.py runs it instead, if there is one, and writes what it draws beside the programs.
+`stream` is stream.py, run in a network namespace of its own. Where valgrind is installed, bench_contacts is also run under
+callgrind for the instructions of one query: other than times they hardly differ between machines. Beside bench_NAME a
+program NAME_accuracy may print a Markdown table of its own; its first argument is the share of its full size to run,
+TUMBLE_SHARE or 0.001. A script NAME_curves.py runs it instead, if there is one, and writes what it draws beside the
+programs.
 """
 import json
 import os
 import pathlib
 import platform
 import re
+import shutil
 import subprocess
 import sys
 
@@ -25,6 +28,23 @@ def run_program(program):
     print(f"running {program.name}", file=sys.stderr)
     output = subprocess.run([program, "--benchmark_format=json"], check=True, stdout=subprocess.PIPE, text=True).stdout
     return json.loads(output)
+
+
+def count_instructions(program, name, queries):
+    """Of one process that makes so many queries."""
+    command = ["valgrind", "--tool=callgrind", "--callgrind-out-file=/dev/null", program,
+               f"--benchmark_filter=^{name}/iterations:", f"--queries={queries}"]
+    said = subprocess.run(command, check=True, capture_output=True, text=True).stderr
+    return int(re.search(r"Collected : (\d+)", said).group(1))
+
+
+def add_instructions(program, report):
+    """The difference of two runs, so that the start of the process and the first queries of all pairs don't count."""
+    first, more = 512, 4096
+    for run in report["benchmarks"]:
+        print(f"counting instructions of {run['name']}", file=sys.stderr)
+        counts = [count_instructions(program, run["name"], queries) for queries in (first, first + more)]
+        run["instructions"] = str((counts[1] - counts[0]) // more)
 
 
 def table(report):
@@ -85,7 +105,10 @@ def main():
         sys.exit(f"no such benchmark: {' '.join(sorted(wanted)) or 'none is built'}")
     sections = []
     for path in programs:
-        sections.append(f"## {path.name}\n{table(run_program(path))}")
+        report = run_program(path)
+        if path.name == "bench_contacts" and shutil.which("valgrind"):
+            add_instructions(path, report)
+        sections.append(f"## {path.name}\n{table(report)}")
         accuracy = path.with_name(path.name.removeprefix("bench_") + "_accuracy")
         if accuracy.is_file():
             sections.append(f"## {accuracy.name}\n{own_table(accuracy)}")

@@ -1,0 +1,117 @@
+// See box_axis.h. Faces first; then, unless a corner of one box in the other shows that no direction separates more, the
+// crossings of edges.
+#include "collision/box_axis.h"
+
+#include <utility>
+
+#include "math/rotation.h"
+
+namespace tumble {
+namespace {
+
+/// sin^2 of the angle between two edges below which their axis is no direction any more. What lies between that and
+/// kNearlyParallelEdges is evaluated with all six extents, since its unit axis is rounded.
+constexpr double kParallelEdges = 1e-24, kNearlyParallelEdges = 1e-6;
+/// Axes whose separations differ by less than this share of the sizes are equal but for rounding: the first one stays.
+constexpr double kEqualAxes = 1e-14;
+
+BoxAxis find_face_axis(const BoxPair& pair, double tie) {
+  const Vec3 t_B = pair.R.transpose() * pair.t;
+  const Vec3 a_axes = pair.t.cwiseAbs() - (pair.a + pair.R_abs * pair.b);
+  const Vec3 b_axes = t_B.cwiseAbs() - (pair.b + pair.R_abs.transpose() * pair.a);
+  int i = 0, j = 0;
+  for (int k = 1; k < 3; ++k) {
+    if (a_axes[k] > a_axes[i] + tie) i = k;
+    if (b_axes[k] > b_axes[j] + tie) j = k;
+  }
+  if (b_axes[j] > a_axes[i] + tie) {
+    return {b_axes[j], std::copysign(1.0, t_B[j]) * pair.R.col(j), BoxAxis::Kind::face_b, 0, j};
+  }
+  return {a_axes[i], std::copysign(1.0, pair.t[i]) * Vec3::Unit(i), BoxAxis::Kind::face_a, i, 0};
+}
+
+/// Corner of a box that is furthest along d, both in its frame.
+Vec3 furthest_corner(const Vec3& h, const Vec3& d) {
+  return {std::copysign(h.x(), d.x()), std::copysign(h.y(), d.y()), std::copysign(h.z(), d.z())};
+}
+
+/// Whether a point is no further than this [m] from a box about the origin, or at least that deep in it.
+bool is_within(const Vec3& p, const Vec3& h, double distance) {
+  const Vec3 beyond = p.cwiseAbs() - h;
+  const bool beside_a_face = (beyond.x() > 0.0) + (beyond.y() > 0.0) + (beyond.z() > 0.0) <= 1;
+  return beside_a_face && beyond.maxCoeff() <= distance;
+}
+
+/// True: no direction at all separates by more than the axis. A corner of one box at some depth in the other is
+/// overlapped by as much along any direction; no direction parts it from the other by more than its distance.
+bool is_proven(const BoxPair& pair, const BoxAxis& axis) {
+  const Vec3 n_B = pair.R.transpose() * axis.normal_A;
+  return is_within(pair.t - pair.R * furthest_corner(pair.b, n_B), pair.a, axis.separation) ||
+         is_within(pair.R.transpose() * (furthest_corner(pair.a, axis.normal_A) - pair.t), pair.b,
+                   axis.separation);
+}
+
+/// Separation along n = e_i x r_j / length, with |n . e_i| and |n . r_j| (zero but for rounding) counted if `honest`.
+BoxAxis evaluate_edge_axis(const BoxPair& pair, int i, int j, double length, bool honest) {
+  const Vec3 n = Vec3::Unit(i).cross(pair.R.col(j)) / length;
+  const double centre = n.dot(pair.t);
+  double extents = 0.0;
+  for (int k = 0; k < 3; ++k) {
+    if (k != i || honest) extents += pair.a[k] * std::abs(n[k]);
+    if (k != j || honest) extents += pair.b[k] * std::abs(n.dot(pair.R.col(k)));
+  }
+  return {std::abs(centre) - extents, std::copysign(1.0, centre) * n, BoxAxis::Kind::edges, i, j};
+}
+
+/// Whether scaled / sqrt(length2) > floor, without the root; may say yes within rounding.
+bool may_exceed(double scaled, double length2, double floor) {
+  const double square = scaled * scaled, floor2 = floor * floor * length2;
+  return scaled < 0.0 ? floor < 0.0 && square <= floor2 * (1.0 + 1e-12)
+                      : floor <= 0.0 || square >= floor2 * (1.0 - 1e-12);
+}
+
+/// Replaces `best` by the crossing of A's axis i with B's axis j if that separates more, and more than `at_least`.
+template <int i, int j>
+void try_edge_axis(const BoxPair& pair, double at_least, BoxAxis& best) {
+  constexpr int i1 = (i + 1) % 3, i2 = (i + 2) % 3, j1 = (j + 1) % 3, j2 = (j + 2) % 3;
+  // e_i x r_j = (0, -R(i2, j), R(i1, j)) in the cyclic order of i; its products with r_j1, r_j2 are entries of R.
+  const double length2 = pair.R(i1, j) * pair.R(i1, j) + pair.R(i2, j) * pair.R(i2, j);
+  const double centre = pair.t[i2] * pair.R(i1, j) - pair.t[i1] * pair.R(i2, j);
+  const double extents = pair.a[i1] * pair.R_abs(i2, j) + pair.a[i2] * pair.R_abs(i1, j) +
+                         pair.b[j1] * pair.R_abs(i, j2) + pair.b[j2] * pair.R_abs(i, j1);
+  const bool honest = length2 < kNearlyParallelEdges;
+  if (!honest && !may_exceed(std::abs(centre) - extents, length2, std::max(best.separation, at_least)))
+    return;
+  if (length2 < kParallelEdges) return;
+  const BoxAxis axis = evaluate_edge_axis(pair, i, j, std::sqrt(length2), honest);
+  if (axis.separation > best.separation) best = axis;
+}
+
+/// The best of the nine crossings, or the first beyond the margin.
+BoxAxis find_edge_axis(const BoxPair& pair, double margin, double at_least) {
+  BoxAxis best;
+  const auto try_all = [&]<int... k>(std::integer_sequence<int, k...>) {
+    (void)(... || (try_edge_axis<k / 3, k % 3>(pair, at_least, best), best.separation > margin));
+  };
+  try_all(std::make_integer_sequence<int, 9>{});
+  return best;
+}
+
+}  // namespace
+
+BoxPair::BoxPair(const Box& box_a, const Box& box_b, const Pose& X_AB)
+    : a(box_a.half_extents),
+      b(box_b.half_extents),
+      t(X_AB.p),
+      R(rotation_matrix(X_AB.q)),
+      R_abs(R.cwiseAbs()) {}
+
+BoxAxis find_axis(const BoxPair& pair, double margin) {
+  const double tie = kEqualAxes * (pair.a.sum() + pair.b.sum());
+  const BoxAxis face = find_face_axis(pair, tie);
+  if (face.separation > margin || is_proven(pair, face)) return face;
+  const BoxAxis edges = find_edge_axis(pair, margin, face.separation + tie);
+  return edges.separation > face.separation + tie ? edges : face;
+}
+
+}  // namespace tumble

@@ -4,16 +4,17 @@
 
 #include <utility>
 
+#include "collision/segment.h"
 #include "math/rotation.h"
 
 namespace tumble {
 namespace {
 
-/// sin^2 of the angle between two edges below which their axis is no direction any more. What lies between that and
-/// kNearlyParallelEdges is evaluated with all six extents, since its unit axis is rounded.
-constexpr double kParallelEdges = 1e-24, kNearlyParallelEdges = 1e-6;
+/// sin^2 of the angle between two edges below which their axis is evaluated with all six extents, since its unit axis is
+/// rounded. Below kParallel it is no direction any more.
+constexpr double kNearlyParallel = 1e-6;
 /// Axes whose separations differ by less than this share of the sizes are equal but for rounding: the first one stays.
-constexpr double kEqualAxes = 1e-14;
+constexpr double kAxisTie = 1e-14;
 
 BoxAxis find_face_axis(const BoxPair& pair, double tie) {
   const Vec3 t_B = pair.R.transpose() * pair.t;
@@ -79,10 +80,10 @@ void try_edge_axis(const BoxPair& pair, double at_least, BoxAxis& best) {
   const double centre = pair.t[i2] * pair.R(i1, j) - pair.t[i1] * pair.R(i2, j);
   const double extents = pair.a[i1] * pair.R_abs(i2, j) + pair.a[i2] * pair.R_abs(i1, j) +
                          pair.b[j1] * pair.R_abs(i, j2) + pair.b[j2] * pair.R_abs(i, j1);
-  const bool honest = length2 < kNearlyParallelEdges;
+  const bool honest = length2 < kNearlyParallel;
   if (!honest && !may_exceed(std::abs(centre) - extents, length2, std::max(best.separation, at_least)))
     return;
-  if (length2 < kParallelEdges) return;
+  if (length2 < kParallel) return;
   const BoxAxis axis = evaluate_edge_axis(pair, i, j, std::sqrt(length2), honest);
   if (axis.separation > best.separation) best = axis;
 }
@@ -107,7 +108,7 @@ BoxPair::BoxPair(const Box& box_a, const Box& box_b, const Pose& X_AB)
       R_abs(R.cwiseAbs()) {}
 
 BoxAxis find_axis(const BoxPair& pair, double margin) {
-  const double tie = kEqualAxes * (pair.a.sum() + pair.b.sum());
+  const double tie = kAxisTie * (pair.a.sum() + pair.b.sum());
   const BoxAxis face = find_face_axis(pair, tie);
   if (face.separation > margin || is_proven(pair, face)) return face;
   const BoxAxis edges = find_edge_axis(pair, margin, face.separation + tie);

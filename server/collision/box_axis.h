@@ -2,8 +2,6 @@
 // Manocha, OBBTree, 1996). In A's frame.
 #pragma once
 
-#include <limits>
-
 #include "collision/shape.h"
 
 namespace tumble {
@@ -18,8 +16,8 @@ struct BoxPair {
 
 struct BoxAxis {
   enum class Kind { face_a, face_b, edges };
-  double separation = -std::numeric_limits<double>::infinity();  // [m]
-  Vec3 normal_A = Vec3::UnitZ();                                 // unit, from A to B
+  double separation = -kInfinity;  // [m]
+  Vec3 normal_A = Vec3::UnitZ();   // unit, from A to B
   Kind kind = Kind::face_a;
   int i = 0, j = 0;  // faces across axis i of A, or j of B; edges along both
 };

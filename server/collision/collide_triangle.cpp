@@ -346,11 +346,15 @@ Manifold collide_triangle(const Shape& a, const TriangleSurface& b, std::uint32_
   };
   if (const auto* sphere = std::get_if<Sphere>(&a)) {
     const std::array<Vec3, 1> centre = {Vec3::Zero()};
-    return query({centre, {}, {}, {}, kPointOffsets, {}, 0.0}, sphere->radius);
+    return query({.vertices = centre, .neighbour_offsets = kPointOffsets}, sphere->radius);
   }
   if (const auto* capsule = std::get_if<Capsule>(&a)) {
     const std::array<Vec3, 2> ends = {Vec3(0, 0, -capsule->half_length), Vec3(0, 0, capsule->half_length)};
-    return query({ends, {}, {}, kSegmentEdges, kSegmentOffsets, kSegmentNeighbours, capsule->half_length},
+    return query({.vertices = ends,
+                  .edges = kSegmentEdges,
+                  .neighbour_offsets = kSegmentOffsets,
+                  .neighbours = kSegmentNeighbours,
+                  .radius = capsule->half_length},
                  capsule->radius);
   }
   if (const auto* box = std::get_if<Box>(&a)) {

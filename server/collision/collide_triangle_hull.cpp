@@ -76,6 +76,8 @@ HullPointer make_flat_hull(const SurfaceTriangle& t) {
   hull.edges = {{0, 1, 0, 1}, {1, 2, 0, 1}, {0, 2, 1, 0}};
   hull.neighbour_offsets = {0, 2, 4, 6};
   hull.neighbours = {1, 2, 0, 2, 0, 1};
+  hull.edges_around = {0, 2, 0, 1, 2, 1};
+  hull.centre = (t.corner[0] + t.corner[1] + t.corner[2]) / 3.0;
   for (const Vec3& v : hull.vertices) hull.radius = std::max(hull.radius, v.norm());
   return std::make_shared<const ConvexHull>(std::move(hull));
 }

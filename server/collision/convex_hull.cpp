@@ -208,7 +208,9 @@ void drop_collinear(std::vector<std::vector<std::uint32_t>>& loops, std::size_t 
   }
 }
 
-void add_edges(ConvexHull& hull) {
+}  // namespace
+
+void add_topology(ConvexHull& hull) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> left_of;
   for (std::uint32_t f = 0; f < hull.faces.size(); ++f) {
     const ConvexHull::Face& face = hull.faces[f];
@@ -216,20 +218,23 @@ void add_edges(ConvexHull& hull) {
       left_of[{hull.loops[face.first + i], hull.loops[face.first + (i + 1) % face.count]}] = f;
     }
   }
-  std::vector<std::vector<std::uint32_t>> joined(hull.vertices.size());
-  for (const auto& [edge, left] : left_of) {
-    const auto [tail, head] = edge;
-    joined[tail].push_back(head);
-    if (tail < head) hull.edges.push_back({tail, head, left, left_of.at({head, tail})});
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> edge_of;
+  hull.neighbour_offsets.assign(hull.vertices.size() + 1, 0);
+  for (const auto& [ends, left] : left_of) {  // sorted by tail
+    const auto [tail, head] = ends;
+    if (tail < head) {
+      edge_of[ends] = static_cast<std::uint32_t>(hull.edges.size());
+      hull.edges.push_back({tail, head, left, left_of.at({head, tail})});
+    }
+    hull.neighbours.push_back(head);
+    hull.edges_around.push_back(edge_of.at(std::minmax(tail, head)));
+    hull.neighbour_offsets[tail + 1] = static_cast<std::uint32_t>(hull.neighbours.size());
   }
-  hull.neighbour_offsets.assign(1, 0);
-  for (const auto& heads : joined) {
-    hull.neighbours.insert(hull.neighbours.end(), heads.begin(), heads.end());
-    hull.neighbour_offsets.push_back(static_cast<std::uint32_t>(hull.neighbours.size()));
+  for (const Vec3& vertex : hull.vertices) {
+    hull.centre += vertex / static_cast<double>(hull.vertices.size());
+    hull.radius = std::max(hull.radius, vertex.norm());
   }
 }
-
-}  // namespace
 
 ConvexHull build_convex_hull(const std::vector<Vec3>& points) {
   if (points.size() < 4) {
@@ -252,7 +257,6 @@ ConvexHull build_convex_hull(const std::vector<Vec3>& points) {
     if (vertex_of[p] == kNone) continue;
     vertex_of[p] = static_cast<std::uint32_t>(hull.vertices.size());
     hull.vertices.push_back(distinct[p]);
-    hull.radius = std::max(hull.radius, distinct[p].norm());
   }
   for (const auto& loop : loops) {
     const Vec3 normal = loop_normal(distinct, loop);
@@ -262,7 +266,7 @@ ConvexHull build_convex_hull(const std::vector<Vec3>& points) {
                           static_cast<std::uint32_t>(loop.size())});
     for (const std::uint32_t p : loop) hull.loops.push_back(vertex_of[p]);
   }
-  add_edges(hull);
+  add_topology(hull);
   return hull;
 }
 

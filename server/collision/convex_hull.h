@@ -26,8 +26,13 @@ struct ConvexHull {
   std::vector<Edge> edges;
   std::vector<std::uint32_t> neighbour_offsets;  ///< Size vertices + 1: slice of `neighbours` of each vertex.
   std::vector<std::uint32_t> neighbours;         ///< Vertices joined by an edge, for hill climbing.
+  std::vector<std::uint32_t> edges_around;       ///< The edge to each of `neighbours`.
+  Vec3 centre = Vec3::Zero();                    ///< Mean of the vertices [m].
   double radius = 0.0;                           ///< Largest |vertex| [m].
 };
+
+/// Fills in edges, neighbours, edges around, centre and radius from vertices, loops and faces.
+void add_topology(ConvexHull& hull);
 
 /// Hull of at least 4 points [m] that span a volume. Throws std::invalid_argument naming the cause and the point
 /// (fewer than 4 distinct points, non-finite coordinate, all in one plane within 1e-9 of their extent).

@@ -10,20 +10,19 @@
 namespace tumble {
 namespace {
 
-/// Facets this little behind the best [parts of the smaller radius] are still evaluated, so that the lead is known and
-/// rounding can't prune a winner.
-constexpr double kLeadSought = 1e-3;
 /// Share of the radii below which two separations are equal: their rounding, and what a nearly touching pair of arcs
 /// may lead by although its edges do not cross.
 constexpr double kFacetTie = 1e-14;
+/// Share of B's radius: about a smaller disc a facet's neighbours are not told from it.
+constexpr double kLeastDisc = 1e-4;
 /// Faces of each body whose bounds are kept; those of larger hulls are computed again where needed.
 constexpr std::size_t kKeptFaces = 512;
 /// Edges of each side that are looked at together.
 constexpr std::size_t kBlock = 128;
 /// From so many pairs of edges on it pays to look for a better point against each edge.
 constexpr std::size_t kManyPairs = 256;
-/// Of a walk between faces and corners; two or three are used.
-constexpr int kWalkRounds = 8;
+/// Of a walk between faces and corners. If two don't end it, edges win.
+constexpr int kWalkRounds = 2;
 /// Larger indices are not remembered in the 32-bit feature: such hulls are searched without a seed.
 constexpr std::uint32_t kIndexBits = 15, kIndexLimit = 1u << kIndexBits;
 
@@ -47,11 +46,19 @@ using Block = std::array<EdgeArc, kBlock>;
 class PointHeights {
  public:
   PointHeights() {}  // not defaulted: `{}` would clear thousands of bytes
-  void measure(const Polytope& polytope, const Vec3& point) {
+
+  /// Returns the highest face, the nearest one of a body that the point is in.
+  std::uint32_t measure(const Polytope& polytope, const Vec3& point) {
     polytope_ = &polytope;
     point_ = point;
-    const std::size_t kept = std::min(polytope.faces.size(), kKeptFaces);
-    for (std::size_t i = 0; i < kept; ++i) heights_[i] = height_over(i);
+    std::uint32_t highest = 0;
+    double most = -kInfinity;
+    for (std::uint32_t i = 0; i < polytope.faces.size(); ++i) {
+      const double height = height_over(i);
+      if (i < kKeptFaces) heights_[i] = height;
+      if (height > most) highest = i, most = height;
+    }
+    return highest;
   }
   double operator[](std::size_t face) const { return face < kKeptFaces ? heights_[face] : height_over(face); }
 
@@ -64,52 +71,28 @@ class PointHeights {
   std::array<double, kKeptFaces> heights_;
 };
 
-/// One body and what is known of it: up to two points of the other one, measured over its faces.
-class Side {
- public:
-  explicit Side(const Polytope& body) : polytope(body) {}
+/// One body and what is known of it: two points of the other one, measured over its faces.
+struct Side {
+  const Polytope& polytope;
+  PointHeights near{}, nearer{};
 
-  void measure(const Vec3& point) { points_[last_ = measured_++ % 2].measure(polytope, point); }
-  /// Over the faces, of the point that was measured last.
-  const PointHeights& heights() const { return points_[last_]; }
-  std::uint32_t nearest_face() const;
-  /// Largest height of that point over the other faces.
-  double highest_but(std::uint32_t face) const;
   /// No face separates by more than this.
-  double bound(std::size_t face) const {
-    return measured_ < 2 ? points_[0][face] : std::min(points_[0][face], points_[1][face]);
-  }
+  double bound(std::size_t face) const { return std::min(near[face], nearer[face]); }
   /// Along an arc between two normals the overlap with any one point of the other body is at least the smaller of its
   /// ends, as long as both are overlaps. False: no facet of this edge overlaps by less than `depth` >= 0.
   bool may_win(const ConvexHull::Edge& edge, double depth) const {
-    const auto reaches = [&](const PointHeights& heights) {
-      return std::max(heights[edge.left_face], heights[edge.right_face]) >= -depth;
-    };
-    return reaches(points_[0]) && (measured_ < 2 || reaches(points_[1]));
+    return std::max(near[edge.left_face], near[edge.right_face]) >= -depth &&
+           std::max(nearer[edge.left_face], nearer[edge.right_face]) >= -depth;
   }
-
-  const Polytope& polytope;
-
- private:
-  std::size_t measured_ = 0, last_ = 0;
-  std::array<PointHeights, 2> points_;
 };
 
-std::uint32_t Side::nearest_face() const {
-  std::uint32_t best = 0;
-  for (std::uint32_t i = 1; i < polytope.faces.size(); ++i) {
-    if (heights()[i] > heights()[best]) best = i;
-  }
-  return best;
-}
-
-double Side::highest_but(std::uint32_t face) const {
-  double highest = -kInfinity;
-  for (std::uint32_t i = 0; i < polytope.faces.size(); ++i) {
-    if (i != face) highest = std::max(highest, heights()[i]);
-  }
-  return highest;
-}
+/// Where two bodies touch in a facet of their difference: a point of each; how far the facet reaches about the point of
+/// it that is above the origin [m], < 0 if that lies beside it, or nothing is certain; and until when it stays a facet
+/// (as FacetAnswer::lead).
+struct Touch {
+  Vec3 p_a, p_b;
+  double clearance, lead;
+};
 
 /// How much higher than a corner, the lowest along d, all others are.
 double lead_of_corner(const Polytope& polytope, std::uint32_t lowest, const Vec3& d) {
@@ -124,13 +107,7 @@ double lead_of_corner(const Polytope& polytope, std::uint32_t lowest, const Vec3
 class FacetSearch {
  public:
   FacetSearch(const PolytopePair& pair, PairCache& cache)
-      : a_(pair.a),
-        b_(pair.b),
-        R_(pair.R_AB),
-        p_(pair.p_AB),
-        cache_(cache),
-        lead_(kLeadSought * std::min(pair.a.radius, pair.b.radius)),
-        tie_(tie_of(pair)) {}
+      : a_{pair.a}, b_{pair.b}, R_(pair.R_AB), p_(pair.p_AB), cache_(cache), tie_(tie_of(pair)) {}
 
   Facet face_a(std::uint32_t i, double enough = -kInfinity);
   Facet face_b(std::uint32_t i, double enough = -kInfinity);
@@ -139,46 +116,42 @@ class FacetSearch {
   EdgeArc arc_of_b(std::uint32_t i) const;
 
   FacetAnswer search(double margin, const Facet& seed);
+  double prove(const Facet& facet) const;
 
  private:
   double separation_along(const Vec3& n);
-  Vec3 corner_of_b_in_a() const { return R_ * b_.polytope.vertices[cache_.vertex_B] + p_; }
-  Vec3 corner_of_a_in_b() const { return R_.transpose() * (a_.polytope.vertices[cache_.vertex_A] - p_); }
-  void choose_points(const Facet& seed);
-  Facet walk_on_a();
-  Facet walk_on_b();
-  FacetAnswer prove_face_a(const Facet& facet) const;
-  FacetAnswer prove_face_b(const Facet& facet) const;
+  Vec3 corner_of_a() const { return a_.polytope.vertices[cache_.vertex_A]; }
+  Vec3 corner_of_b() const { return R_ * b_.polytope.vertices[cache_.vertex_B] + p_; }
+  Vec3 in_b(const Vec3& point) const { return R_.transpose() * (point - p_); }
+  void choose_direction(const Facet& seed);
+  Facet walk_on_a(double margin);
+  Facet walk_on_b(double margin);
   void search_faces();
   void search_edges(double margin);
   void cross(const EdgeArc& a, const EdgeArc& b);
   bool overlaps_more(const EdgeArc& arc, bool of_a, double depth);
   std::size_t gather(bool of_a, std::uint32_t& next, Block& block) const;
   std::size_t thin_out(bool of_a, Block& block, std::size_t count);
-  double clearance(const Facet& facet) const;
+  Touch touch_of_face(const Facet& facet) const;
+  Touch touch_of_edges(const Facet& facet) const;
+  void be_not_along(const Vec3& face_normal, const Facet& facet, Touch& touch) const;
 
   void offer(const Facet& facet);
-  double needed() const { return std::max(floor_, best_.separation) - lead_; }
+  double needed() const { return std::max(floor_, best_.separation) - 4.0 * tie_; }
 
   Side a_, b_;
   const Mat3& R_;
   const Vec3& p_;
   PairCache& cache_;
-  const double lead_, tie_;
+  const double tie_;
   double floor_ = -kInfinity;  // a facet separates by this
-  Facet best_{Facet::Kind::none, 0, 0,
-              -kInfinity};      // the best so far, the first of equals in the order faces of A, of B, edges
-  double second_ = -kInfinity;  // the best of the others that were evaluated
+  /// The best so far, the first of equals in the order faces of A, of B, edges.
+  Facet best_{Facet::Kind::none, 0, 0, -kInfinity};
 };
 
 /// Faces of A, then of B, then pairs of edges come by in this order: a later one must be better by more than a tie.
 void FacetSearch::offer(const Facet& facet) {
-  if (best_.kind == Facet::Kind::none || facet.separation > best_.separation + tie_) {
-    second_ = std::max(second_, best_.kind == Facet::Kind::none ? -kInfinity : best_.separation);
-    best_ = facet;
-  } else {
-    second_ = std::max(second_, facet.separation);
-  }
+  if (best_.kind == Facet::Kind::none || facet.separation > best_.separation + tie_) best_ = facet;
 }
 
 /// Below `enough` the separation may be any number not below the true one.
@@ -233,61 +206,38 @@ EdgeArc FacetSearch::arc_of_b(std::uint32_t i) const {
           -(R_ * b.faces[edge.right_face].normal), i};
 }
 
-/// The points that bound: each body's furthest along the seed's axis, else the last known one, else the centre line.
-void FacetSearch::choose_points(const Facet& seed) {
+/// Each body's furthest corner along the seed's axis, else the last known one, else the centre line.
+void FacetSearch::choose_direction(const Facet& seed) {
   if (seed.kind == Facet::Kind::none) {
     separation_along(cache_.axis_A.squaredNorm() > 0.0 ? cache_.axis_A : p_);
   } else {
     separation_along(seed.normal_A);
     floor_ = seed.separation;
   }
-  a_.measure(corner_of_b_in_a());
-  b_.measure(corner_of_a_in_b());
 }
 
-/// The face nearest to B's corner, B's furthest corner behind that face, and so on until they agree.
-Facet FacetSearch::walk_on_a() {
-  for (int round = 0;; ++round) {
-    const std::uint32_t corner = cache_.vertex_B;
-    const Facet facet = face_a(a_.nearest_face());
+/// The face nearest to B's corner, B's furthest corner behind that face, and so on: the last face, or one beyond the
+/// margin.
+Facet FacetSearch::walk_on_a(double margin) {
+  std::uint32_t nearest = a_.near.measure(a_.polytope, corner_of_b());
+  for (int round = 1;; ++round) {
+    const Facet facet = face_a(nearest);
     floor_ = std::max(floor_, facet.separation);
-    if (cache_.vertex_B == corner) return facet;
-    a_.measure(corner_of_b_in_a());
-    if (round == kWalkRounds) return {};
+    if (facet.separation > margin) return facet;
+    nearest = a_.nearer.measure(a_.polytope, corner_of_b());
+    if (nearest == facet.a || round == kWalkRounds) return facet;
   }
 }
 
-Facet FacetSearch::walk_on_b() {
-  for (int round = 0;; ++round) {
-    const std::uint32_t corner = cache_.vertex_A;
-    const Facet facet = face_b(b_.nearest_face());
+Facet FacetSearch::walk_on_b(double margin) {
+  std::uint32_t nearest = b_.near.measure(b_.polytope, in_b(corner_of_a()));
+  for (int round = 1;; ++round) {
+    const Facet facet = face_b(nearest);
     floor_ = std::max(floor_, facet.separation);
-    if (cache_.vertex_A == corner) return facet;
-    b_.measure(corner_of_a_in_b());
-    if (round == kWalkRounds) return {};
+    if (facet.separation > margin) return facet;
+    nearest = b_.nearer.measure(b_.polytope, in_b(corner_of_a()));
+    if (nearest == facet.b || round == kWalkRounds) return facet;
   }
-}
-
-/// The end of a walk is a face of A and B's furthest corner behind it. Along any direction the bodies overlap by at least
-/// that corner's depth in A, or are no further apart than it is from A. If that is its height over the face, the
-/// face wins; and as long as the corner stays furthest and other faces lower than minus that height.
-FacetAnswer FacetSearch::prove_face_a(const Facet& facet) const {
-  if (facet.kind == Facet::Kind::none) return {};
-  const double lead = -std::abs(facet.separation) - a_.highest_but(facet.a) - 2.0 * tie_;
-  if (lead < 0.0) return {};
-  const double corner = lead_of_corner(b_.polytope, cache_.vertex_B, R_.transpose() * facet.normal_A);
-  return {facet, std::min(lead, corner)};
-}
-
-/// As the other way round; but of equal separations a face of A comes first.
-FacetAnswer FacetSearch::prove_face_b(const Facet& facet) const {
-  if (facet.kind == Facet::Kind::none) return {};
-  double lead = -std::abs(facet.separation) - b_.highest_but(facet.b) - 2.0 * tie_;
-  for (std::uint32_t i = 0; i < a_.polytope.faces.size() && lead >= 0.0; ++i) {
-    lead = std::min(lead, facet.separation - a_.bound(i) - 2.0 * tie_);
-  }
-  if (lead < 0.0) return {};
-  return {facet, std::min(lead, lead_of_corner(a_.polytope, cache_.vertex_A, -facet.normal_A))};
 }
 
 void FacetSearch::search_faces() {
@@ -372,50 +322,96 @@ void FacetSearch::search_edges(double margin) {
   }
 }
 
-/// How far inside its own border the facet holds the point nearest to the origin of the Minkowski difference, at least
-/// [m]; < 0: outside.
-double FacetSearch::clearance(const Facet& facet) const {
-  if (facet.kind == Facet::Kind::edges) {
-    const EdgeArc a = arc_of_a(facet.a), b = arc_of_b(facet.b);
-    const SegmentPair pair =
-        closest_points({a.tail + 0.5 * a.along, 0.5 * a.along}, {b.tail + 0.5 * b.along, 0.5 * b.along});
-    const double length_a = a.along.norm(), length_b = b.along.norm();
-    const double sine = a.along.cross(b.along).norm() / (length_a * length_b);
-    return 0.5 * sine *
-           std::min((1.0 - std::abs(pair.s_A)) * length_a, (1.0 - std::abs(pair.s_B)) * length_b);
-  }
+Touch FacetSearch::touch_of_face(const Facet& facet) const {
   const bool of_a = facet.kind == Facet::Kind::face_a;
   const Polytope& polytope = of_a ? a_.polytope : b_.polytope;
-  const Vec3 point = of_a ? Vec3(R_ * b_.polytope.vertices[cache_.vertex_B] + p_)
-                          : Vec3(R_.transpose() * (a_.polytope.vertices[cache_.vertex_A] - p_));
+  const Vec3 corner = of_a ? corner_of_b() : corner_of_a();
+  const Vec3 point = of_a ? corner : in_b(corner);
+  const Vec3 foot = corner + (of_a ? -facet.separation : facet.separation) * facet.normal_A;
+  Touch touch = of_a ? Touch{foot, corner, kInfinity, kInfinity} : Touch{corner, foot, kInfinity, kInfinity};
+
   const ConvexHull::Face& face = polytope.faces[of_a ? facet.a : facet.b];
   const auto loop = polytope.loop(face);
-  double least = kInfinity;
   for (std::size_t i = 0; i < loop.size(); ++i) {
     const Vec3& tail = polytope.vertices[loop[i]];
+    // A face that was merged from nearly coplanar ones lies partly below its plane.
+    if (face.normal.dot(tail) < face.offset - tie_) return {foot, foot, -1.0, -1.0};
     const Vec3 along = polytope.vertices[loop[i + 1 == loop.size() ? 0 : i + 1]] - tail;
-    least = std::min(least, face.normal.cross(along).dot(point - tail) / along.norm());
+    touch.clearance = std::min(touch.clearance, face.normal.cross(along).dot(point - tail) / along.norm());
   }
-  return least;
+  if (of_a) {
+    touch.lead = lead_of_corner(b_.polytope, cache_.vertex_B, R_.transpose() * facet.normal_A);
+  } else {
+    touch.lead = lead_of_corner(a_.polytope, cache_.vertex_A, -facet.normal_A);
+    const std::uint32_t flattest = face_towards(a_.polytope, facet.normal_A);
+    be_not_along(a_.polytope.faces[flattest].normal, facet, touch);
+  }
+  return touch;
+}
+
+Touch FacetSearch::touch_of_edges(const Facet& facet) const {
+  const EdgeArc a = arc_of_a(facet.a), b = arc_of_b(facet.b);
+  const SegmentPair pair =
+      closest_points({a.tail + 0.5 * a.along, 0.5 * a.along}, {b.tail + 0.5 * b.along, 0.5 * b.along});
+  if (std::abs(facet.normal_A.dot(b.tail - a.tail) - facet.separation) > tie_)
+    return {pair.p_A, pair.p_B, -1.0, -1.0};
+  const double length_a = a.along.norm(), length_b = b.along.norm();
+  const double sine = a.along.cross(b.along).norm() / (length_a * length_b);
+  const double clearance =
+      0.5 * sine * std::min((1.0 - std::abs(pair.s_A)) * length_a, (1.0 - std::abs(pair.s_B)) * length_b);
+  // The arcs cross until an end of one has turned into the other's plane.
+  const double turn_b = std::min(std::abs(b.left.dot(a.along)), std::abs(b.right.dot(a.along))) / length_a;
+  const double turn_a = std::min(std::abs(a.left.dot(b.along)), std::abs(a.right.dot(b.along))) / length_b;
+  Touch touch{pair.p_A, pair.p_B, clearance, std::min(turn_a, turn_b) * b_.polytope.radius};
+  for (const Vec3& normal : {a.left, a.right, b.left, b.right}) be_not_along(normal, facet, touch);
+  return touch;
+}
+
+/// A face that comes before the facet in order must not lie along it, or else it could be equal.
+void FacetSearch::be_not_along(const Vec3& face_normal, const Facet& facet, Touch& touch) const {
+  const double sine = face_normal.cross(facet.normal_A).norm();
+  touch.lead = std::min(touch.lead, sine * b_.polytope.radius);
+  if (sine * touch.clearance <= 4.0 * tie_) touch.clearance = -1.0;
+}
+
+/// For a facet that is proven to win: how much may move until something else does (as FacetAnswer::lead), else < 0.
+///
+/// The origin lies at depth d under a disc of the facet with radius c, which is part of A - B. Along a direction at an
+/// angle x to the facet's normal A - B reaches d cos x + c sin x at least, which is more than d up to x = 2 atan(c / d):
+/// if c > 2 d, up to 126 degrees. For all others there must be some point of A - B deep enough on the other side. Apart,
+/// c > 0 says that the distance itself is along the normal.
+double FacetSearch::prove(const Facet& facet) const {
+  const Touch touch = facet.kind == Facet::Kind::edges ? touch_of_edges(facet) : touch_of_face(facet);
+  const double d = std::max(0.0, -facet.separation);
+  const double disc = touch.clearance - 2.0 * d - kLeastDisc * b_.polytope.radius;
+  if (disc < 0.0) return -1.0;
+  const double lead = std::min(disc, touch.lead);
+  if (d == 0.0) return lead;
+  // A point at height -y below the origin and x beside it, as seen from the directions beyond 126 degrees.
+  const auto reach = [&](const Vec3& p) {
+    const double y = -facet.normal_A.dot(p), x = std::sqrt(std::max(0.0, p.squaredNorm() - y * y));
+    return 0.6 * y - 0.8 * x;
+  };
+  const Vec3 centre_b = R_ * b_.polytope.centre + p_;
+  return std::min(lead, std::max(reach(a_.polytope.centre - touch.p_b), reach(touch.p_a - centre_b)) - d);
 }
 
 FacetAnswer FacetSearch::search(double margin, const Facet& seed) {
-  choose_points(seed);
-  if (const FacetAnswer proven = prove_face_a(walk_on_a()); proven.lead >= 0.0) return proven;
-  if (const FacetAnswer proven = prove_face_b(walk_on_b()); proven.lead >= 0.0) return proven;
+  choose_direction(seed);
+  const Facet on_a = walk_on_a(margin);
+  if (on_a.separation > margin) return {on_a, -1.0};
+  if (const double lead = prove(on_a); lead >= 0.0) return {on_a, lead};
+  const Facet on_b = walk_on_b(margin);
+  if (on_b.separation > margin) return {on_b, -1.0};
+  if (const double lead = prove(on_b); lead >= 0.0) return {on_b, lead};
   search_faces();
   if (best_.separation > margin) return {best_, -1.0};
   search_edges(margin);
   if (best_.separation > margin) return {best_, -1.0};
-  // The winner is at depth d under a facet of the Minkowski difference that holds a disc of radius c about the point
-  // below which the origin lies. Then every direction further than atan(c / d) from its normal overlaps by hypot(c, d)
-  // or has a facet of its own on the way down, and all nearer ones are beaten by the disc as long as c > 2 d.
-  if (best_.kind != Facet::Kind::edges)
-    (best_.kind == Facet::Kind::face_a ? face_a(best_.a) : face_b(best_.b));
-  const double c = clearance(best_), d = std::max(0.0, -best_.separation);
-  if (c <= 2.0 * d) return {best_, 0.0};
-  const double gap = best_.separation - std::max(second_, best_.separation - lead_);
-  return {best_, std::min(gap, std::sqrt(c * c + d * d) - d)};
+  if (best_.kind == Facet::Kind::face_a) face_a(best_.a);
+  if (best_.kind == Facet::Kind::face_b) face_b(best_.b);
+  if (best_.kind == Facet::Kind::edges) separation_along(best_.normal_A);
+  return {best_, std::max(0.0, prove(best_))};
 }
 
 }  // namespace
@@ -434,8 +430,11 @@ Facet recall_facet(const PolytopePair& pair, PairCache& cache) {
 
 FacetAnswer find_facet(const PolytopePair& pair, double margin, PairCache& cache) {
   const Facet seed = recall_facet(pair, cache);
-  if (seed.kind != Facet::Kind::none && seed.separation > margin) return {seed, -1.0};
   FacetSearch search(pair, cache);
+  if (seed.kind != Facet::Kind::none) {
+    if (seed.separation > margin) return {seed, -1.0};
+    if (const double lead = search.prove(seed); lead >= 0.0) return {seed, lead};
+  }
   FacetAnswer answer = search.search(margin, seed);
   cache.feature = encode(answer.facet);
   return answer;

@@ -21,24 +21,41 @@ constexpr std::array<std::uint32_t, 24> box_neighbours() {
   return neighbours;
 }
 
+/// The face whose loop runs from one corner to the other.
+constexpr std::uint32_t box_face_left_of(std::uint32_t tail, std::uint32_t head) {
+  std::uint32_t i = 0;
+  while (kBoxLoops[i] != tail || kBoxLoops[i % 4 == 3 ? i - 3 : i + 1] != head) ++i;
+  return i / 4;
+}
+
 constexpr std::array<ConvexHull::Edge, 12> box_edges() {
   std::array<ConvexHull::Edge, 12> edges{};
   std::size_t n = 0;
   for (std::uint32_t i = 0; i < 24; ++i) {
     const std::uint32_t tail = kBoxLoops[i], head = kBoxLoops[i % 4 == 3 ? i - 3 : i + 1];
-    if (tail > head) continue;
-    for (std::uint32_t k = 0; k < 24; ++k) {
-      if (kBoxLoops[k] == head && kBoxLoops[k % 4 == 3 ? k - 3 : k + 1] == tail) {
-        edges[n++] = {tail, head, i / 4, k / 4};
-      }
-    }
+    if (tail < head) edges[n++] = {tail, head, i / 4, box_face_left_of(head, tail)};
   }
   return edges;
 }
 
+/// The edge from corner i / 3 across axis i % 3.
+constexpr std::array<std::uint32_t, 24> box_edges_around() {
+  std::array<std::uint32_t, 24> around{};
+  const auto edges = box_edges();
+  for (std::uint32_t i = 0; i < 24; ++i) {
+    const std::uint32_t corner = i / 3, other = corner ^ (1u << i % 3);
+    while (edges[around[i]].tail != std::min(corner, other) ||
+           edges[around[i]].head != std::max(corner, other)) {
+      ++around[i];
+    }
+  }
+  return around;
+}
+
 /// Looking at every vertex costs no more than descending, up to here.
 constexpr std::size_t kScannedVertices = 40;
-constexpr std::array<std::uint32_t, 24> kBoxNeighbours = box_neighbours();
+constexpr std::array<std::uint32_t, 24> kBoxNeighbours = box_neighbours(),
+                                        kBoxEdgesAround = box_edges_around();
 constexpr std::array<ConvexHull::Edge, 12> kBoxEdges = box_edges();
 
 /// Closest point of a face to p, whose foot on the face's plane is `foot`.
@@ -78,12 +95,13 @@ BoxFeatures::BoxFeatures(const Box& box) : radius_(box.half_extents.norm()) {
 }
 
 Polytope BoxFeatures::view() const {
-  return {vertices_, kBoxLoops, faces_, kBoxEdges, kBoxNeighbourOffsets, kBoxNeighbours, radius_};
+  return {vertices_,      kBoxLoops,       faces_,       kBoxEdges, kBoxNeighbourOffsets,
+          kBoxNeighbours, kBoxEdgesAround, Vec3::Zero(), radius_};
 }
 
 Polytope view_of(const ConvexHull& hull) {
-  return {hull.vertices,          hull.loops,      hull.faces, hull.edges,
-          hull.neighbour_offsets, hull.neighbours, hull.radius};
+  return {hull.vertices,   hull.loops,        hull.faces,  hull.edges, hull.neighbour_offsets,
+          hull.neighbours, hull.edges_around, hull.centre, hull.radius};
 }
 
 Lowest descend(const Polytope& polytope, const Vec3& d, std::uint32_t start, double enough) {
@@ -125,12 +143,10 @@ std::uint32_t face_towards(const Polytope& polytope, const Vec3& d) {
   const std::uint32_t vertex = descend(polytope, -d, 0, -std::numeric_limits<double>::infinity()).vertex;
   std::uint32_t best = 0;
   double most = -std::numeric_limits<double>::infinity();
-  for (const ConvexHull::Edge& edge : polytope.edges) {
-    if (edge.tail != vertex && edge.head != vertex) continue;
-    for (const std::uint32_t face : {edge.left_face, edge.right_face}) {
-      const double along = polytope.faces[face].normal.dot(d);
-      if (along > most) best = face, most = along;
-    }
+  for (const std::uint32_t edge : polytope.edges_around_vertex(vertex)) {
+    const std::uint32_t face = flatter_face(polytope, polytope.edges[edge], d);
+    const double along = polytope.faces[face].normal.dot(d);
+    if (along > most) best = face, most = along;
   }
   return best;
 }

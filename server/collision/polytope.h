@@ -11,15 +11,20 @@
 namespace tumble {
 
 struct Polytope {
-  std::span<const Vec3> vertices;
-  std::span<const std::uint32_t> loops;
-  std::span<const ConvexHull::Face> faces;
-  std::span<const ConvexHull::Edge> edges;
-  std::span<const std::uint32_t> neighbour_offsets, neighbours;
+  std::span<const Vec3> vertices{};
+  std::span<const std::uint32_t> loops{};
+  std::span<const ConvexHull::Face> faces{};
+  std::span<const ConvexHull::Edge> edges{};
+  std::span<const std::uint32_t> neighbour_offsets{}, neighbours{}, edges_around{};
+  Vec3 centre = Vec3::Zero();  ///< Well inside.
   double radius = 0.0;
 
   std::span<const std::uint32_t> loop(const ConvexHull::Face& face) const {
     return loops.subspan(face.first, face.count);
+  }
+  std::span<const std::uint32_t> edges_around_vertex(std::uint32_t vertex) const {
+    const std::uint32_t first = neighbour_offsets[vertex];
+    return edges_around.subspan(first, neighbour_offsets[vertex + 1] - first);
   }
 };
 

@@ -11,28 +11,8 @@
 
 namespace tumble::test {
 
-/// Edges, neighbours and radius from vertices, loops and faces.
 inline HullPointer finish_hull(ConvexHull hull) {
-  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> face_of;
-  for (std::uint32_t f = 0; f < hull.faces.size(); ++f) {
-    const auto& face = hull.faces[f];
-    for (std::uint32_t i = 0; i < face.count; ++i) {
-      face_of[{hull.loops[face.first + i], hull.loops[face.first + (i + 1) % face.count]}] = f;
-    }
-  }
-  std::vector<std::vector<std::uint32_t>> neighbours(hull.vertices.size());
-  for (const auto& [ends, face] : face_of) {
-    neighbours[ends.first].push_back(ends.second);
-    if (ends.first < ends.second) {
-      hull.edges.push_back({ends.first, ends.second, face, face_of.at({ends.second, ends.first})});
-    }
-  }
-  hull.neighbour_offsets = {0};
-  for (const auto& list : neighbours) {
-    hull.neighbours.insert(hull.neighbours.end(), list.begin(), list.end());
-    hull.neighbour_offsets.push_back(static_cast<std::uint32_t>(hull.neighbours.size()));
-  }
-  for (const Vec3& v : hull.vertices) hull.radius = std::max(hull.radius, v.norm());
+  add_topology(hull);
   return std::make_shared<const ConvexHull>(std::move(hull));
 }
 

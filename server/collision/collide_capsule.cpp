@@ -134,7 +134,7 @@ struct CapsuleQuery {
 /// the edge over which it leaves the face.
 Manifold lie_on_face(const CapsuleQuery& q, std::uint32_t index, const Vec3& normal_P) {
   const ConvexHull::Face& face = q.polytope.faces[index];
-  const ContactTolerance tolerance = ContactTolerance::of(face_width(q.polytope, face));
+  const ContactTolerance tolerance = ContactTolerance::of(face.width);
   struct End {
     double s;
     std::uint32_t name;

@@ -57,8 +57,7 @@ Manifold clip_faces(const PlacedFace& reference, const PlacedFace& incident, boo
   }
   polygon.close();
 
-  const double width =
-      std::min(face_width(reference.body, reference.face), face_width(incident.body, incident.face));
+  const double width = std::min(reference.face.width, incident.face.width);
   const ContactTolerance tolerance = ContactTolerance::of(width, face_to_face);
   const auto corner = [&](int k) -> Vec3 {
     const Vec3 d = reference.vertex_A(k, 0) - plane.origin_A;
@@ -92,7 +91,9 @@ Manifold cross_edges(const PolytopePair& pair, const Facet& facet, double margin
                                name_crossing(edge_a.tail, edge_a.head, edge_b.tail, edge_b.head));
 }
 
-Manifold make_manifold(const PolytopePair& pair, const Facet& facet, double margin, bool& face_to_face) {
+/// `vertex_a` and `vertex_b` are the furthest ones along the facet's normal.
+Manifold make_manifold(const PolytopePair& pair, const Facet& facet, std::uint32_t vertex_a,
+                       std::uint32_t vertex_b, double margin, bool& face_to_face) {
   const Mat3 identity = Mat3::Identity();
   const Vec3 zero = Vec3::Zero();
   const Vec3 towards_a_B = pair.R_AB.transpose() * -facet.normal_A;
@@ -101,9 +102,9 @@ Manifold make_manifold(const PolytopePair& pair, const Facet& facet, double marg
     face_a = flatter_face(pair.a, pair.a.edges[facet.a], facet.normal_A);
     face_b = flatter_face(pair.b, pair.b.edges[facet.b], towards_a_B);
   } else if (facet.kind == Facet::Kind::face_a) {
-    face_b = face_towards(pair.b, towards_a_B);
+    face_b = face_towards(pair.b, towards_a_B, vertex_b);
   } else {
-    face_a = face_towards(pair.a, facet.normal_A);
+    face_a = face_towards(pair.a, facet.normal_A, vertex_a);
   }
   const double cosine_a = pair.a.faces[face_a].normal.dot(facet.normal_A),
                cosine_b = pair.b.faces[face_b].normal.dot(towards_a_B);
@@ -135,7 +136,7 @@ Manifold collide(const PolytopePair& pair, const Shape& a, const Shape& b, const
   cache.slack = answer.lead;
   if (separation > margin) return {};
   bool face_to_face = false;
-  Manifold manifold = make_manifold(pair, answer.facet, margin, face_to_face);
+  Manifold manifold = make_manifold(pair, answer.facet, cache.vertex_A, cache.vertex_B, margin, face_to_face);
   if (touches_along_axis(manifold, separation, pair.a.radius + pair.b.radius)) return manifold;
   return contact_of_closest_points(manifold, separation, face_to_face, a, b, X_AB, margin, cache);
 }

@@ -270,7 +270,7 @@ class TriangleQuery {
         const std::uint32_t vertex = loop[k * loop.size() / count];
         polygon.add_vertex(plane.to_plane(core_.vertices[vertex]), vertex);
       }
-      width = std::min(width, face_width(core_, face));
+      width = std::min(width, face.width);
     }
     polygon.close();
     const ContactTolerance tolerance = ContactTolerance::of(width);
@@ -297,7 +297,7 @@ class TriangleQuery {
       polygon.add_vertex(plane.to_plane(t_.corner[k]), t_.vertex[k], 1u << k);
     }
     polygon.close();
-    const ContactTolerance tolerance = ContactTolerance::of(std::min(face_width(core_, face), t_.width()));
+    const ContactTolerance tolerance = ContactTolerance::of(std::min(face.width, t_.width()));
     for (std::size_t i = 0; i < loop.size(); ++i) {
       const std::uint32_t tail = loop[i], head = loop[i + 1 == loop.size() ? 0 : i + 1];
       auto side = side_between(plane.to_plane(core_.vertices[tail]), plane.to_plane(core_.vertices[head]));

@@ -73,6 +73,7 @@ HullPointer make_flat_hull(const SurfaceTriangle& t) {
   hull.loops = {0, 1, 2, 0, 2, 1};
   const double offset = t.normal.dot(t.corner[0]);
   hull.faces = {{t.normal, offset, 0, 3}, {-t.normal, -offset, 3, 3}};
+  for (ConvexHull::Face& face : hull.faces) face.width = compute_width(hull, face);
   hull.edges = {{0, 1, 0, 1}, {1, 2, 0, 1}, {0, 2, 1, 0}};
   hull.neighbour_offsets = {0, 2, 4, 6};
   hull.neighbours = {1, 2, 0, 2, 0, 1};

@@ -210,6 +210,31 @@ void drop_collinear(std::vector<std::vector<std::uint32_t>>& loops, std::size_t 
 
 }  // namespace
 
+Lowest scan_lowest(std::span<const Vec3> vertices, const Vec3& d) {
+  std::array<double, kScannedVertices> heights;
+  const double* const p = vertices.front().data();  // one after the other: this loop goes in packets
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    heights[i] = d.x() * p[3 * i] + d.y() * p[3 * i + 1] + d.z() * p[3 * i + 2];
+  }
+  Lowest lowest{0, kInfinity};
+  for (std::uint32_t i = 0; i < vertices.size(); ++i) {
+    if (heights[i] < lowest.height) lowest = {i, heights[i]};
+  }
+  return lowest;
+}
+
+double compute_width(const ConvexHull& hull, const ConvexHull::Face& face) {
+  double perimeter = 0.0, area2 = 0.0;
+  const Vec3& origin = hull.vertices[hull.loops[face.first]];
+  for (std::uint32_t i = 0; i < face.count; ++i) {
+    const Vec3& tail = hull.vertices[hull.loops[face.first + i]];
+    const Vec3& head = hull.vertices[hull.loops[face.first + (i + 1) % face.count]];
+    perimeter += (head - tail).norm();
+    area2 += (tail - origin).cross(head - origin).dot(face.normal);
+  }
+  return perimeter > 0.0 ? area2 / perimeter : 0.0;
+}
+
 void add_topology(ConvexHull& hull) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> left_of;
   for (std::uint32_t f = 0; f < hull.faces.size(); ++f) {
@@ -230,6 +255,7 @@ void add_topology(ConvexHull& hull) {
     hull.edges_around.push_back(edge_of.at(std::minmax(tail, head)));
     hull.neighbour_offsets[tail + 1] = static_cast<std::uint32_t>(hull.neighbours.size());
   }
+  for (ConvexHull::Face& face : hull.faces) face.width = compute_width(hull, face);
   for (const Vec3& vertex : hull.vertices) {
     hull.centre += vertex / static_cast<double>(hull.vertices.size());
     hull.radius = std::max(hull.radius, vertex.norm());

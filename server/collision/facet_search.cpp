@@ -343,7 +343,7 @@ Touch FacetSearch::touch_of_face(const Facet& facet) const {
     touch.lead = lead_of_corner(b_.polytope, cache_.vertex_B, R_.transpose() * facet.normal_A);
   } else {
     touch.lead = lead_of_corner(a_.polytope, cache_.vertex_A, -facet.normal_A);
-    const std::uint32_t flattest = face_towards(a_.polytope, facet.normal_A);
+    const std::uint32_t flattest = face_towards(a_.polytope, facet.normal_A, cache_.vertex_A);
     be_not_along(a_.polytope.faces[flattest].normal, facet, touch);
   }
   return touch;

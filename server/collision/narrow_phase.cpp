@@ -105,6 +105,7 @@ class Query {
   bool run(const PairFunction& function, Manifold& manifold) {
     if (is_unmoved()) return ++counters_.unmoved, false;
     manifold = Manifold();
+    cache_.margin = std::numeric_limits<double>::quiet_NaN();
     const bool was_near = cache_.axis_A.squaredNorm() > 0.0 && cache_.gap <= margin_;
     if (stays_beyond_by_motion()) {
       ++counters_.motion_bound;
@@ -178,7 +179,6 @@ class Query {
     cache_.axis_A = axis_A;
     cache_.gap = gap;
     cache_.slack = -1.0;
-    cache_.margin = std::numeric_limits<double>::quiet_NaN();
     remember_pose();
   }
   void remember_pose() {

@@ -78,7 +78,7 @@ struct PatchOf {
         add(patch, polytope.vertices[vertex], vertex);
       }
       patch.centre = patch.corners[0];
-      patch.width = face_width(polytope, face);
+      patch.width = face.width;
       return patch;
     }
     const std::uint32_t vertex = descend(polytope, -d, 0, -std::numeric_limits<double>::infinity()).vertex;

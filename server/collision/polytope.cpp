@@ -2,8 +2,6 @@
 // a face that the point sees, so it is the nearest over all of those.
 #include "collision/polytope.h"
 
-#include <limits>
-
 #include "collision/feature_name.h"
 #include "collision/segment.h"
 
@@ -52,8 +50,6 @@ constexpr std::array<std::uint32_t, 24> box_edges_around() {
   return around;
 }
 
-/// Looking at every vertex costs no more than descending, up to here.
-constexpr std::size_t kScannedVertices = 40;
 constexpr std::array<std::uint32_t, 24> kBoxNeighbours = box_neighbours(),
                                         kBoxEdgesAround = box_edges_around();
 constexpr std::array<ConvexHull::Edge, 12> kBoxEdges = box_edges();
@@ -62,7 +58,7 @@ constexpr std::array<ConvexHull::Edge, 12> kBoxEdges = box_edges();
 PointDistance closest_on_face(const Polytope& polytope, std::uint32_t index, const Vec3& p, double height) {
   const ConvexHull::Face& face = polytope.faces[index];
   const auto loop = polytope.loop(face);
-  PointDistance best{std::numeric_limits<double>::infinity(), face.normal, p, 0};
+  PointDistance best{kInfinity, face.normal, p, 0};
   bool inside = true;
   for (std::size_t i = 0; i < loop.size(); ++i) {
     const Vec3& tail = polytope.vertices[loop[i]];
@@ -85,12 +81,15 @@ PointDistance closest_on_face(const Polytope& polytope, std::uint32_t index, con
 }  // namespace
 
 BoxFeatures::BoxFeatures(const Box& box) : radius_(box.half_extents.norm()) {
+  const Vec3& h = box.half_extents;
   for (std::uint32_t i = 0; i < 8; ++i) {
-    for (int k = 0; k < 3; ++k) vertices_[i][k] = i >> k & 1 ? box.half_extents[k] : -box.half_extents[k];
+    for (int k = 0; k < 3; ++k) vertices_[i][k] = i >> k & 1 ? h[k] : -h[k];
   }
   for (std::uint32_t i = 0; i < 6; ++i) {
     const int axis = static_cast<int>(i / 2);
-    faces_[i] = {i % 2 ? Vec3(-Vec3::Unit(axis)) : Vec3::Unit(axis), box.half_extents[axis], 4 * i, 4};
+    const double h1 = h[(axis + 1) % 3], h2 = h[(axis + 2) % 3];
+    faces_[i] = {i % 2 ? Vec3(-Vec3::Unit(axis)) : Vec3::Unit(axis), h[axis], 4 * i, 4,
+                 2.0 * h1 * h2 / (h1 + h2)};
   }
 }
 
@@ -105,14 +104,7 @@ Polytope view_of(const ConvexHull& hull) {
 }
 
 Lowest descend(const Polytope& polytope, const Vec3& d, std::uint32_t start, double enough) {
-  if (polytope.vertices.size() <= kScannedVertices) {
-    Lowest lowest{0, d.dot(polytope.vertices[0])};
-    for (std::uint32_t i = 1; i < polytope.vertices.size(); ++i) {
-      const double height = d.dot(polytope.vertices[i]);
-      if (height < lowest.height) lowest = {i, height};
-    }
-    return lowest;
-  }
+  if (polytope.vertices.size() <= kScannedVertices) return scan_lowest(polytope.vertices, d);
   Lowest lowest{start < polytope.vertices.size() ? start : 0, 0.0};
   lowest.height = d.dot(polytope.vertices[lowest.vertex]);
   for (bool descending = true; descending && lowest.height >= enough;) {
@@ -126,23 +118,13 @@ Lowest descend(const Polytope& polytope, const Vec3& d, std::uint32_t start, dou
   return lowest;
 }
 
-double face_width(const Polytope& polytope, const ConvexHull::Face& face) {
-  const auto loop = polytope.loop(face);
-  double perimeter = 0.0, area2 = 0.0;
-  const Vec3& origin = polytope.vertices[loop[0]];
-  for (std::size_t i = 0; i < loop.size(); ++i) {
-    const Vec3& tail = polytope.vertices[loop[i]];
-    const Vec3& head = polytope.vertices[loop[i + 1 == loop.size() ? 0 : i + 1]];
-    perimeter += (head - tail).norm();
-    area2 += (tail - origin).cross(head - origin).dot(face.normal);
-  }
-  return perimeter > 0.0 ? area2 / perimeter : 0.0;
+std::uint32_t face_towards(const Polytope& polytope, const Vec3& d) {
+  return face_towards(polytope, d, descend(polytope, -d, 0, -kInfinity).vertex);
 }
 
-std::uint32_t face_towards(const Polytope& polytope, const Vec3& d) {
-  const std::uint32_t vertex = descend(polytope, -d, 0, -std::numeric_limits<double>::infinity()).vertex;
+std::uint32_t face_towards(const Polytope& polytope, const Vec3& d, std::uint32_t vertex) {
   std::uint32_t best = 0;
-  double most = -std::numeric_limits<double>::infinity();
+  double most = -kInfinity;
   for (const std::uint32_t edge : polytope.edges_around_vertex(vertex)) {
     const std::uint32_t face = flatter_face(polytope, polytope.edges[edge], d);
     const double along = polytope.faces[face].normal.dot(d);
@@ -167,7 +149,7 @@ bool is_over_face(const Polytope& polytope, std::uint32_t face, const Vec3& p) {
 }
 
 PointDistance compute_distance(const Polytope& polytope, const Vec3& p, double enough) {
-  double highest = -std::numeric_limits<double>::infinity();
+  double highest = -kInfinity;
   std::uint32_t nearest = 0;
   for (std::uint32_t i = 0; i < polytope.faces.size(); ++i) {
     const double height = polytope.faces[i].normal.dot(p) - polytope.faces[i].offset;
@@ -176,7 +158,7 @@ PointDistance compute_distance(const Polytope& polytope, const Vec3& p, double e
   const Vec3& normal = polytope.faces[nearest].normal;
   PointDistance best{highest, normal, p - highest * normal, mix_features(0, nearest)};
   if (highest <= 0.0 || highest > enough || is_over_face(polytope, nearest, p)) return best;
-  best.distance = std::numeric_limits<double>::infinity();
+  best.distance = kInfinity;
   for (std::uint32_t i = 0; i < polytope.faces.size(); ++i) {
     const double height = polytope.faces[i].normal.dot(p) - polytope.faces[i].offset;
     if (height <= 0.0 || height >= best.distance) continue;

@@ -46,18 +46,13 @@ Polytope view_of(const ConvexHull& hull);
 
 /// Vertex with the least height along d, by descent over edges from vertex `start`. Stops at once below `enough`: the
 /// true least height is then below it too.
-struct Lowest {
-  std::uint32_t vertex;
-  double height;
-};
 Lowest descend(const Polytope& polytope, const Vec3& d, std::uint32_t start, double enough);
-
-/// Across the face where it is narrow: twice its area over its perimeter, the inradius of regular shapes [m].
-double face_width(const Polytope& polytope, const ConvexHull::Face& face);
 
 /// Among the faces that meet in the furthest vertex along d, the one whose normal goes along d the most: the face that
 /// another body coming from there meets. A function of d alone.
 std::uint32_t face_towards(const Polytope& polytope, const Vec3& d);
+/// The same if that vertex is known.
+std::uint32_t face_towards(const Polytope& polytope, const Vec3& d, std::uint32_t vertex);
 
 /// Of the two faces of an edge, the one that looks along d more.
 std::uint32_t flatter_face(const Polytope& polytope, const ConvexHull::Edge& edge, const Vec3& d);

@@ -388,6 +388,27 @@ TEST(Pipeline, SwitchesChangeCostNotContacts) {
   EXPECT_EQ(counters[5].unmoved, 0u);
 }
 
+/// Nothing but the same bits of pose and margin is the same question.
+TEST(Pipeline, AKeptManifoldAnswersOnlyItsOwnQuestion) {
+  const Shape box = Box{Vec3::Constant(0.5)};
+  PairCache cache;
+  NarrowPhaseCounters counters;
+  Manifold m;
+  const auto ask = [&](const Vec3& p, double margin) {
+    update_manifold(box, {}, box, {Quat::Identity(), p}, margin, {}, cache, counters, m);
+    return counters.unmoved;
+  };
+  EXPECT_EQ(ask(Vec3(0, 0, 0.99), 0.01), 0u);
+  EXPECT_EQ(ask(Vec3(0, 0, 0.99), 0.01), 1u);
+  EXPECT_EQ(m.count, 4);
+  EXPECT_EQ(ask(Vec3(1e-300, 0, 0.99), 0.01), 1u);
+  EXPECT_EQ(ask(Vec3(1e-300, 0, 0.99), -0.02), 1u);
+  EXPECT_EQ(m.count, 0);
+  EXPECT_EQ(ask(Vec3(1e-300, 0, 2.0), 0.01), 1u);
+  EXPECT_EQ(ask(Vec3(1e-300, 0, 0.99), 0.01), 1u);
+  EXPECT_EQ(m.count, 4);
+}
+
 TEST(Boxes, StackedEqualOnesMeetInFourPointsWithTheExactGap) {
   RandomPose random(51);
   for (const double gap : {-1e-3, -1e-9, 0.0, 1e-9, 1e-3}) {

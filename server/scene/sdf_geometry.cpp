@@ -194,13 +194,14 @@ void read_plane(SdfElement& plane, GeometryDefinition& geometry) {
 }
 
 void read_geometry(SdfElement geometry, BodyType type, GeometryDefinition& definition) {
-  std::vector<SdfElement> shapes = geometry.children(
-      {"sphere", "box", "capsule", "cylinder", "cone", "ellipsoid", "plane", "mesh", "heightmap",
-       "tumble:convex_hull", "tumble:triangle_mesh", "tumble:height_field"});
+  std::vector<SdfElement> shapes =
+      geometry.children({"sphere", "box", "capsule", "cylinder", "cone", "ellipsoid", "plane", "mesh",
+                         "heightmap", "tumble:convex_hull", "tumble:triangle_mesh", "tumble:height_field"});
   for (const char* unsupported : {"image", "polyline", "empty"}) {
-    geometry.refuse(unsupported,
-                    "this geometry is not supported: use sphere, box, capsule, cylinder, cone, ellipsoid, plane, "
-                    "mesh, heightmap or tumble:convex_hull");
+    geometry.refuse(
+        unsupported,
+        "this geometry is not supported: use sphere, box, capsule, cylinder, cone, ellipsoid, plane, "
+        "mesh, heightmap or tumble:convex_hull");
   }
   geometry.finish();
   if (shapes.empty()) {
@@ -247,17 +248,12 @@ double read_friction(SdfElement& surface) {
   return mu;
 }
 
-double read_restitution(SdfElement& surface) {
+void read_bounce(SdfElement& surface, Material& material) {
   std::optional<SdfElement> bounce = surface.child("bounce");
-  if (!bounce) return 0.0;
-  const double restitution = bounce->number("restitution_coefficient", Range::zero_to_one).value_or(0.0);
-  if (std::optional<SdfElement> threshold = bounce->child("threshold")) {
-    threshold->to_number(Range::non_negative);
-    threshold->warn_ignored(
-        "one threshold holds for the whole world, <tumble:restitution_threshold> of <physics>");
-  }
+  if (!bounce) return;
+  material.restitution = bounce->number("restitution_coefficient", Range::zero_to_one).value_or(0.0);
+  material.restitution_threshold = bounce->number("threshold", Range::non_negative);
   bounce->finish();
-  return restitution;
 }
 
 }  // namespace
@@ -286,7 +282,7 @@ GeometryDefinition read_collision(SdfElement& collision, BodyType type) {
   geometry.material.friction = kDefaultFriction;
   if (std::optional<SdfElement> surface = collision.child("surface")) {
     geometry.material.friction = read_friction(*surface);
-    geometry.material.restitution = read_restitution(*surface);
+    read_bounce(*surface, geometry.material);
     surface->finish();
   }
   if (const auto density = collision.number("density", Range::positive)) geometry.material.density = *density;

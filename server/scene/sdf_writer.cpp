@@ -168,6 +168,7 @@ void write_collision(tinyxml2::XMLPrinter& out, const GeometryDefinition& geomet
   }
   Tag bounce(out, "bounce");
   write(out, "restitution_coefficient", geometry.material.restitution);
+  if (const auto threshold = geometry.material.restitution_threshold) write(out, "threshold", *threshold);
 }
 
 void write_visual(tinyxml2::XMLPrinter& out, const GeometryDefinition& geometry) {

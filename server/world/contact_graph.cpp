@@ -7,9 +7,23 @@
 namespace tumble {
 
 const Contact* ContactGraph::find(GeometryPair pair) const {
-  const auto it = std::lower_bound(contacts_.begin(), contacts_.end(), pair,
+  const auto late = contacts_.end() - static_cast<std::ptrdiff_t>(late_);
+  const auto it = std::lower_bound(contacts_.begin(), late, pair,
                                    [](const Contact& c, GeometryPair key) { return c.pair < key; });
-  return it != contacts_.end() && it->pair == pair ? &*it : nullptr;
+  if (it != late && it->pair == pair) return &*it;
+  const auto found = std::find_if(late, contacts_.end(), [&](const Contact& c) { return c.pair == pair; });
+  return found != contacts_.end() ? &*found : nullptr;
+}
+
+void ContactGraph::settle() {
+  if (late_ == 0) return;
+  const auto late = contacts_.end() - static_cast<std::ptrdiff_t>(late_);
+  incoming_.assign(late, contacts_.end());
+  contacts_.erase(late, contacts_.end());
+  late_ = 0;
+  std::sort(incoming_.begin(), incoming_.end(),
+            [](const Contact& l, const Contact& r) { return l.pair < r.pair; });
+  merge_incoming();
 }
 
 void ContactGraph::remove(const std::vector<std::uint32_t>& indices) {
@@ -22,11 +36,15 @@ void ContactGraph::remove(const std::vector<std::uint32_t>& indices) {
   });
 }
 
+/// From the back, and only as far as the first that comes in: contacts are big.
 void ContactGraph::merge_incoming() {
-  const auto middle = static_cast<std::ptrdiff_t>(contacts_.size());
-  contacts_.insert(contacts_.end(), incoming_.begin(), incoming_.end());
-  std::inplace_merge(contacts_.begin(), contacts_.begin() + middle, contacts_.end(),
-                     [](const Contact& l, const Contact& r) { return l.pair < r.pair; });
+  std::size_t old = contacts_.size(), in = incoming_.size();
+  contacts_.resize(old + in);
+  while (in > 0) {
+    const bool from_old = old > 0 && incoming_[in - 1].pair < contacts_[old - 1].pair;
+    contacts_[old + in - 1] = from_old ? contacts_[old - 1] : incoming_[in - 1];
+    --(from_old ? old : in);
+  }
 }
 
 namespace {

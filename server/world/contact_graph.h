@@ -14,6 +14,10 @@ struct Contact {
   GeometryPair pair;
   std::uint32_t body_a = 0, body_b = 0;
   double friction = 0.0, restitution = 0.0;
+  double threshold = 0.0;  ///< [m/s] impacts slower than it do not bounce.
+  /// Fast: crosses a good part of the smaller geometry in a step. Flies: no part of the smooth problem; the two meet,
+  /// if at all, in an impact.
+  bool fast = false, flies = false;
   PairCache cache;
   Manifold manifold;
   Vec3 normal_W = Vec3::UnitZ();  ///< The manifold's normal in W at the last query.
@@ -33,6 +37,19 @@ class ContactGraph {
     merge_incoming();
     return incoming_.size();
   }
+  /// The same in the middle of a step: at the end, in their own order, so that the others keep their places until
+  /// `settle`.
+  template <typename Make>
+  std::size_t insert_late(const std::vector<GeometryPair>& added, Make make) {
+    const std::size_t before = contacts_.size();
+    for (const GeometryPair pair : added) {
+      if (!find(pair)) contacts_.push_back(make(pair));
+    }
+    late_ += contacts_.size() - before;
+    return contacts_.size() - before;
+  }
+  void settle();
+
   /// Removes every contact for which `gone(contact)` holds; returns how many.
   template <typename Gone>
   std::size_t remove_if(Gone gone) {
@@ -43,12 +60,16 @@ class ContactGraph {
   void remove(const std::vector<std::uint32_t>& indices);
 
   const Contact* find(GeometryPair pair) const;
+  Contact* find(GeometryPair pair) {
+    return const_cast<Contact*>(static_cast<const ContactGraph&>(*this).find(pair));
+  }
   std::vector<Contact>& all() { return contacts_; }
   const std::vector<Contact>& all() const { return contacts_; }
 
  private:
   void merge_incoming();
   std::vector<Contact> contacts_, incoming_;
+  std::size_t late_ = 0;  // at the end of contacts_, not in order
 };
 
 /// Carries impulses from the old manifold's points to the new ones: same feature first, else the nearest old point

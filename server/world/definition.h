@@ -18,6 +18,8 @@ struct Material {
   double friction = 0.5;     ///< Coulomb's mu, >= 0. Of a pair: sqrt(mu_a mu_b).
   double restitution = 0.0;  ///< C_r, 0..1. Of a pair: the larger.
   double density = 1000.0;   ///< [kg/m^3], > 0; used where a body gives no inertia of its own.
+  /// [m/s] impacts slower than it do not bounce, >= 0. None: the world's option. Of a pair the larger.
+  std::optional<double> restitution_threshold = std::nullopt;
 };
 
 struct GeometryDefinition {

@@ -19,7 +19,16 @@ struct Counters {
   std::uint64_t sweeps = 0;
   std::uint64_t solver_iterations = 0;  ///< Factorizations of the exact solver.
   std::uint64_t solver_fallbacks = 0;   ///< Islands without a trustworthy exact solution.
-  std::uint64_t impacts = 0, impacts_capped = 0;
+  std::uint64_t impacts = 0;            ///< Pairs that struck.
+  std::uint64_t impacts_capped = 0;     ///< Bodies and islands whose impacts reached the bound of a step.
+  std::uint64_t impacts_micro = 0;      ///< Impacts below the threshold: resting contact from then on.
+  std::uint64_t impacts_ended = 0;  ///< Bouncing that came to its end (all that was left fitted in the step).
+  std::uint64_t impacts_clamped = 0;  ///< Restitution shortened, since it would have raised kinetic energy.
+  std::uint64_t impacts_gained = 0;   ///< Impacts that raised kinetic energy beyond rounding: always 0.
+  std::uint64_t impact_passes = 0;    ///< Reflections of simultaneous impacts.
+  std::uint64_t impact_searches = 0,
+                impact_looks = 0;             ///< Times of impact looked for; poses looked at for them.
+  std::uint64_t impact_searches_bounded = 0;  ///< Searches that ended early, at their bound.
   std::uint64_t rests = 0, wakes = 0;
   std::uint64_t non_finite_contained = 0;  ///< Bodies held at their last good state.
 };

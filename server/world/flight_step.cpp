@@ -29,6 +29,7 @@ Motion World::motion_in_flight(std::uint32_t slot, std::uint64_t step) const {
 }
 
 void World::advance_free(std::uint32_t slot, const StepContext& step) {
+  if (step.ways_only) return note_way(slot, step);
   const Motion last_good = motions_[slot];
   calm_for_[slot] = 0.0;
   ++counters_.islands_free;
@@ -51,27 +52,63 @@ void World::integrate_free(std::uint32_t slot, const StepContext& step) {
   step.integrate(masses_[slot], path, step.h, motion);
 }
 
-void World::follow_flight(std::uint32_t slot) {
-  FreeBody& body = free_[slot];
-  const FlightLoad load{.acceleration = acceleration_of(slot),
-                        .torque = scratch_.load[slot].torque_W(),
-                        .linear_damping = bodies_[slot].linear_damping,
-                        .angular_damping = bodies_[slot].angular_damping};
-  if (body.state == FreeBody::State::none || step_count_ >= body.last || body.flight.load() != load) {
-    body.flight = Flight(masses_[slot], motions_[slot], load);
-    body.takeoff = step_count_;
-    const double steps = kLargestPhase / (body.flight.phase_rate() * options_.time_step);
-    body.last = step_count_ + static_cast<std::uint64_t>(std::max(1.0, std::min(0x1p60, steps)));
-    body.due = step_count_;
-    body.reach = kNearest;
-    body.state = FreeBody::State::flying;
+/// What only constant forces act on, undamped, follows its flight; of all else the end of this step is found as ever, and
+/// the way there is drawn between.
+void World::note_way(std::uint32_t slot, const StepContext& step) {
+  const Motion start = motions_[slot];
+  const Load& load = scratch_.load[slot];
+  const bool damped = bodies_[slot].linear_damping > 0.0 || bodies_[slot].angular_damping > 0.0;
+  const bool flies = options_.integrator == Integrator::closed_form && !damped && !load.follows_body() &&
+                     load.torque_W().isZero(0.0);
+  StepContext whole = step;
+  whole.ways_only = false;
+  if (flies && step.begin > 0.0) {
+    const Flight flight(masses_[slot], start, acceleration_of(slot));
+    scratch_.events.set_trajectory(slot, Trajectory(masses_[slot], start, step.begin, flight, 0.0));
+  } else if (flies) {
+    take_off(slot);
+    set_flight_trajectory(slot);
+  } else if (step.begin > 0.0) {
+    integrate_free(slot, whole);
+    note_end(slot, start, step);
+  } else {
+    advance_free(slot, whole);
+    note_end(slot, start, step);
   }
+}
+
+void World::note_end(std::uint32_t slot, const Motion& start, const StepContext& step) {
+  const Motion end = motions_[slot];
+  motions_[slot] = start;
+  scratch_.events.set_trajectory(
+      slot, Trajectory(masses_[slot], start, step.begin, step.begin + step.h, end, step.integrate));
+}
+
+void World::follow_flight(std::uint32_t slot) {
+  take_off(slot);
+  const FreeBody& body = free_[slot];
   if (body.flight.turns_freely()) {
     motions_[slot] = motion_in_flight(slot, step_count_ + 1);
   } else {
     const double h = options_.time_step, steps = static_cast<double>(step_count_ - body.takeoff);
     motions_[slot] = body.flight.stepped(masses_[slot], motions_[slot].q, steps * h, (steps + 1.0) * h);
   }
+}
+
+void World::take_off(std::uint32_t slot) {
+  FreeBody& body = free_[slot];
+  const FlightLoad load{.acceleration = acceleration_of(slot),
+                        .torque = scratch_.load[slot].torque_W(),
+                        .linear_damping = bodies_[slot].linear_damping,
+                        .angular_damping = bodies_[slot].angular_damping};
+  if (body.state != FreeBody::State::none && step_count_ < body.last && body.flight.load() == load) return;
+  body.flight = Flight(masses_[slot], motions_[slot], load);
+  body.takeoff = step_count_;
+  const double steps = kLargestPhase / (body.flight.phase_rate() * options_.time_step);
+  body.last = step_count_ + static_cast<std::uint64_t>(std::max(1.0, std::min(0x1p60, steps)));
+  body.due = step_count_;
+  body.reach = kNearest;
+  body.state = FreeBody::State::flying;
 }
 
 /// Its boxes, if none of them meets anybody else's.

@@ -40,17 +40,23 @@ void World::advance_connected(std::size_t island, const StepContext& step) {
   build_problem(island, step);
   ContactProblem& problem = scratch_.problem;
   prepare(problem, step.bounds);
-  // The slides' solver bounces as taught, inside its own passes.
-  if (options_.solver != Solver::course_impulse) bounce(problem);
+  // With events, impacts have their own times. The slides' solver bounces as taught, inside its own passes.
+  if (!step.impact_events && options_.solver != Solver::course_impulse) bounce(problem);
+  solve_problem(step);
+  if (try_rest(scratch_.residual)) return;
+  move_bodies(step);
+}
+
+void World::solve_problem(const StepContext& step) {
+  ContactProblem& problem = scratch_.problem;
   const SolverReport solved = step.solve(problem, step.solver_settings);
   counters_.sweeps += static_cast<std::uint64_t>(solved.sweeps);
   counters_.solver_iterations += static_cast<std::uint64_t>(solved.iterations);
   counters_.solver_fallbacks += solved.fallback ? 1 : 0;
   ++(solved.accepted ? counters_.islands_accepted : counters_.islands_solved);
   step_residual_ = std::max(step_residual_, solved.residual);
+  scratch_.residual = solved.residual;
   store_impulses();
-  if (try_rest(solved.residual)) return;
-  move_bodies(step);
 }
 
 void World::bounce(ContactProblem& problem) {
@@ -62,12 +68,7 @@ void World::bounce(ContactProblem& problem) {
 
 void World::build_problem(std::size_t island, const StepContext& step) {
   const Islands& islands = scratch_.islands;
-  scratch_.problem.clear();
-  scratch_.problem.h = step.h;
-  scratch_.problem_slot.clear();
-  scratch_.after_forces.clear();
-  scratch_.contact_source.clear();
-  scratch_.row_source.clear();
+  begin_problem(step.h);
   for (std::uint32_t i = islands.body_begin[island]; i < islands.body_begin[island + 1]; ++i) {
     land(islands.bodies[i]);
     problem_body(islands.bodies[i], step.h);
@@ -82,6 +83,19 @@ void World::build_problem(std::size_t island, const StepContext& step) {
       add_tie_rows(source - contact_count, step.h);
     }
   }
+  end_problem();
+}
+
+void World::begin_problem(double h) {
+  scratch_.problem.clear();
+  scratch_.problem.h = h;
+  scratch_.problem_slot.clear();
+  scratch_.after_forces.clear();
+  scratch_.contact_source.clear();
+  scratch_.row_source.clear();
+}
+
+void World::end_problem() {
   for (const std::uint32_t slot : scratch_.problem_slot) {
     if (slot != kWorld) scratch_.local[slot] = kWorld;
   }
@@ -214,9 +228,7 @@ void World::move_bodies(const StepContext& step) {
   for (std::uint32_t i = 0; i < scratch_.problem_movable; ++i) {
     const SolverBody& solved = problem.bodies[i];
     const std::uint32_t slot = scratch_.problem_slot[i];
-    const MassProperties& mass = masses_[slot];
-    Motion& motion = motions_[slot];
-    const Motion last_good = motion;
+    const Motion& motion = motions_[slot];
     // Momentum after the forces plus what the impulses changed, so that a body no impulse met keeps its bits.
     const Scratch::AfterForces& after = scratch_.after_forces[i];
     const Vec3 L1 = after.L + after.I_W * (solved.w - solved.inv_I_W * after.L);
@@ -225,14 +237,27 @@ void World::move_bodies(const StepContext& step) {
       path.v0 = solved.v0;
       path.L0 = motion.L + after.I_W * (solved.w0 - motion.w);
     }
-    step.integrate_in_contact(mass, path, step.h, motion);
-    motion.x += solved.shift;
-    if (!solved.turn.isZero(0.0)) {
-      motion.q = normalized(exp_map(solved.turn) * motion.q);
-      motion.w = angular_velocity(mass, motion.q, motion.L);
-    }
-    if (!is_finite(motion)) contain(slot, last_good);
+    move_body(slot, path, solved.shift, solved.turn, step);
   }
+}
+
+void World::move_body(std::uint32_t slot, const VelocityPath& path, const Vec3& shift, const Vec3& turn,
+                      const StepContext& step) {
+  const MassProperties& mass = masses_[slot];
+  Motion& motion = motions_[slot];
+  const Motion last_good = motion;
+  if (step.ways_only) {
+    scratch_.events.set_trajectory(slot, Trajectory(mass, motion, step.begin, step.begin + step.h, path,
+                                                    step.integrate_in_contact, shift, turn));
+    return;
+  }
+  step.integrate_in_contact(mass, path, step.h, motion);
+  motion.x += shift;
+  if (!turn.isZero(0.0)) {
+    motion.q = normalized(exp_map(turn) * motion.q);
+    motion.w = angular_velocity(mass, motion.q, motion.L);
+  }
+  if (!is_finite(motion)) contain(slot, last_good);
 }
 
 void World::contain(std::uint32_t slot, const Motion& last_good) {

@@ -70,13 +70,13 @@ bool World::advance_springs(std::size_t island, const StepContext& step) {
     if (slot != kWorld) scratch_.local[slot] = kWorld;
   }
   if (!advance_smoothly(system, step.h)) return false;
-  return store_smooth_motion(step.h);
+  return store_smooth_motion(step);
 }
 
 /// False if the bodies are all but at rest at both ends: then the rows of the springs, which can certify rest, decide.
-bool World::store_smooth_motion(double h) {
+bool World::store_smooth_motion(const StepContext& step) {
   const std::vector<SmoothBody>& bodies = scratch_.smooth.bodies;
-  const double limit = std::min(options_.rest.speed, options_.rest.acceleration * h);
+  const double limit = std::min(options_.rest.speed, options_.rest.acceleration * step.h);
   const auto speed = [](const Motion& motion) { return motion.v.norm() + motion.w.norm(); };
   bool slow = options_.skip_resting, finite = true;
   for (std::size_t i = 0; i < bodies.size(); ++i) {
@@ -89,7 +89,9 @@ bool World::store_smooth_motion(double h) {
     if (bodies[i].type != BodyType::dynamic) continue;
     const std::uint32_t slot = scratch_.problem_slot[i];
     land(slot);
+    const Motion start = motions_[slot];
     motions_[slot] = bodies[i].motion;
+    if (step.ways_only) note_end(slot, start, step);
     calm_for_[slot] = 0.0;
   }
   ++counters_.islands_smooth;

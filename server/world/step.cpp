@@ -27,6 +27,12 @@ void drop_repeated_points(std::vector<Contact>& contacts, std::uint32_t index) {
   }
 }
 
+/// Of the geometry's furthest point about the centre of mass [m/s].
+double turning_speed(const Geometry& geometry, const Motion& motion) {
+  // What does not turn may be infinite.
+  return motion.w.isZero(0.0) ? 0.0 : motion.w.norm() * (geometry.X_BS.p.norm() + geometry.radius);
+}
+
 }  // namespace
 
 void World::step() {
@@ -43,6 +49,9 @@ void World::step(const std::function<void(Stage)>& stage_done) {
                    .solver_settings = options_.solver_settings,
                    .bounds = options_.bounds};
   step.solver_settings.gravity = options_.gravity;
+  step.impact_events = options_.impact_events && options_.solver != Solver::course_impulse &&
+                       options_.integrator != Integrator::course &&
+                       options_.integrator != Integrator::semi_implicit_euler;
   if (options_.solver == Solver::pgs || options_.solver == Solver::nncg) {
     step.bounds.slop = std::max(step.bounds.slop, options_.sweep_slop);
   }
@@ -52,7 +61,7 @@ void World::step(const std::function<void(Stage)>& stage_done) {
   stage_done(Stage::broad_phase);
   update_contacts(step);
   stage_done(Stage::narrow_phase);
-  build_islands();
+  build_islands(step);
   stage_done(Stage::islands);
   advance_islands(step);
   stage_done(Stage::solve);
@@ -126,14 +135,7 @@ void World::update_boxes(const StepContext& step) {
 
 void World::update_pairs() {
   refresh_active();
-  scratch_.pairs.clear();
-  broad_phase_.update_pairs(scratch_.pairs);
-  std::erase_if(scratch_.pairs, [this](const GeometryPair& pair) {
-    const std::uint32_t a = geometries_[pair.a].body;
-    const std::uint32_t b = geometries_[pair.b].body;
-    return a == b || !(movable(a) || movable(b)) || jointed(a, b);
-  });
-  split_surface_pairs();
+  find_pairs();
   scratch_.lost.clear();
   std::copy_if(active_contacts_.begin(), active_contacts_.end(), std::back_inserter(scratch_.lost),
                [this](std::uint32_t index) { return is_lost(contacts_.all()[index].pair); });
@@ -145,6 +147,17 @@ void World::update_pairs() {
     active_stale_ = true;
   }
   refresh_active();
+}
+
+void World::find_pairs() {
+  scratch_.pairs.clear();
+  broad_phase_.update_pairs(scratch_.pairs);
+  std::erase_if(scratch_.pairs, [this](const GeometryPair& pair) {
+    const std::uint32_t a = geometries_[pair.a].body;
+    const std::uint32_t b = geometries_[pair.b].body;
+    return a == b || !(movable(a) || movable(b)) || jointed(a, b);
+  });
+  split_surface_pairs();
 }
 
 void World::split_surface_pairs() {
@@ -184,36 +197,45 @@ Contact World::make_contact(GeometryPair pair) const {
   contact.body_b = b.body;
   contact.friction = std::sqrt(a.material.friction * b.material.friction);
   contact.restitution = std::max(a.material.restitution, b.material.restitution);
+  contact.threshold = std::max(a.material.restitution_threshold.value_or(options_.restitution_threshold),
+                               b.material.restitution_threshold.value_or(options_.restitution_threshold));
+  contact.flies = true;
   contact.impulse.fill(Vec3::Zero());
   return contact;
 }
 
-double World::pair_margin(const Contact& contact, double h) const {
+double World::pair_margin(Contact& contact, const StepContext& step) const {
   const Geometry& a = geometries_[contact.pair.a];
   const Geometry& b = geometries_[contact.pair.b];
+  const Motion &A = motions_[contact.body_a], &B = motions_[contact.body_b];
   // What could close within the step must be seen before it does.
-  const Vec3 v = motions_[contact.body_a].v - motions_[contact.body_b].v;
-  return std::min(a.contact_margin, b.contact_margin) + h * v.norm();
+  double way = step.h * Vec3(A.v - B.v).norm();
+  contact.fast = step.impact_events && way > std::min(a.radius, b.radius);
+  if (step.impact_events && (contact.fast || contact.restitution > 0.0)) {
+    way += step.h * (turning_speed(a, A) + turning_speed(b, B));
+  }
+  return std::min(a.contact_margin, b.contact_margin) + way;
 }
 
 void World::update_contacts(const StepContext& step) {
-  for (const std::uint32_t index : active_contacts_) {
-    Contact& contact = contacts_.all()[index];
-    const Geometry& a = geometries_[contact.pair.a];
-    const Geometry& b = geometries_[contact.pair.b];
-    const Manifold old_manifold = contact.manifold;
-    const Pose X_WA = geometry_pose(a);
-    update_manifold(a.shape, X_WA, b.shape, geometry_pose(b), pair_margin(contact, step.h),
-                    options_.narrow_phase, contact.cache, counters_.narrow_phase, contact.manifold,
-                    contact.pair.part);
-    contact.normal_W = X_WA.q * contact.manifold.normal_A;
-    if (contact.pair.part > 0) drop_repeated_points(contacts_.all(), index);
-    if (contact.manifold.count == 0) continue;
-    transport_impulses(old_manifold, contact.manifold, contact.normal_W, a.contact_margin, contact.impulse);
-    wake_slot(contact.body_a);
-    wake_slot(contact.body_b);
-  }
+  for (const std::uint32_t index : active_contacts_) update_contact(index, step);
   refresh_active();
+}
+
+void World::update_contact(std::uint32_t index, const StepContext& step) {
+  Contact& contact = contacts_.all()[index];
+  const Geometry& a = geometries_[contact.pair.a];
+  const Geometry& b = geometries_[contact.pair.b];
+  const Manifold old_manifold = contact.manifold;
+  const Pose X_WA = geometry_pose(a);
+  update_manifold(a.shape, X_WA, b.shape, geometry_pose(b), pair_margin(contact, step), options_.narrow_phase,
+                  contact.cache, counters_.narrow_phase, contact.manifold, contact.pair.part);
+  contact.normal_W = X_WA.q * contact.manifold.normal_A;
+  if (contact.pair.part > 0) drop_repeated_points(contacts_.all(), index);
+  if (contact.manifold.count == 0) return;
+  transport_impulses(old_manifold, contact.manifold, contact.normal_W, a.contact_margin, contact.impulse);
+  wake_slot(contact.body_a);
+  wake_slot(contact.body_b);
 }
 
 void World::refresh_active() {
@@ -253,15 +275,22 @@ bool World::takes_part(std::uint32_t slot) const {
          !(motions_[slot].v.isZero(0.0) && motions_[slot].w.isZero(0.0));
 }
 
-void World::build_islands() {
+void World::build_islands(const StepContext& step) {
+  scratch_.flying.clear();
   scratch_.edges.clear();
   scratch_.edge_source.clear();
   const auto end = [this](std::uint32_t slot) {
     return slot != kWorld && movable(slot) ? slot : IslandEdge::kImmovable;
   };
   for (const std::uint32_t index : active_contacts_) {
-    const Contact& contact = contacts_.all()[index];
+    Contact& contact = contacts_.all()[index];
+    contact.flies = step.impact_events && flies(contact, step.h);
     if (contact.manifold.count == 0) continue;
+    if (contact.flies) {
+      contact.impulse.fill(Vec3::Zero());
+      scratch_.flying.push_back(index);
+      continue;
+    }
     scratch_.edges.push_back({end(contact.body_a), end(contact.body_b)});
     scratch_.edge_source.push_back(index);
   }
@@ -276,9 +305,12 @@ void World::build_islands() {
   scratch_.builder.build(body_capacity(), awake_, scratch_.edges, scratch_.islands);
 }
 
-void World::advance_islands(const StepContext& step) {
+void World::advance_islands(const StepContext& whole_step) {
   contained_.clear();
   step_residual_ = 0.0;
+  StepContext step = whole_step;
+  step.ways_only = !scratch_.flying.empty();
+  if (step.ways_only) begin_impacts(step);
   const Islands& islands = scratch_.islands;
   for (std::size_t island = 0; island < islands.count(); ++island) {
     if (islands.edge_begin[island] == islands.edge_begin[island + 1]) {
@@ -287,6 +319,7 @@ void World::advance_islands(const StepContext& step) {
       advance_connected(island, step);
     }
   }
+  if (step.ways_only) advance_impacts(step);
   for (const std::uint32_t slot : kinematic_) move_kinematic(motions_[slot], step.h);
   counters_.bodies_stepped += awake_.size();
   counters_.bodies_skipped_flying += aloft_count_;

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <limits>
 
 #include "world/check.h"
 
@@ -24,6 +25,9 @@ void check_material(const Material& material) {
   check_range("friction", material.friction, 0.0, kMaxFriction);
   check_range("restitution", material.restitution, 0.0, 1.0);
   check_range("density", material.density, 1e-9, 1e9);
+  if (const auto threshold = material.restitution_threshold) {
+    check_range("restitution threshold", *threshold, 0.0, std::numeric_limits<double>::max());
+  }
 }
 
 void check_name(const std::string& name) {

@@ -2,6 +2,7 @@
 // state and scratch, so a copy is a snapshot that continues with the same bits. No clock, thread or socket in here.
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <map>
 #include <optional>
@@ -17,6 +18,7 @@
 #include "world/contact_graph.h"
 #include "world/definition.h"
 #include "world/diagnostics.h"
+#include "world/impact_events.h"
 #include "world/options.h"
 
 namespace tumble {
@@ -164,6 +166,11 @@ class World {
       Mat3 I_W;
     };
     std::vector<AfterForces> after_forces;  // of the problem's movable bodies, before the impulses
+    ImpactEvents events;
+    std::vector<std::uint32_t> flying;                    // contacts that may strike in this step
+    std::vector<std::vector<std::uint32_t>> contacts_of;  // by slot; filled at the first impact of a step
+    bool contacts_indexed = false;
+    double residual = 0.0;              // [m/s] of the problem's solution
     std::uint32_t problem_movable = 0;  // the first bodies of the problem; the rest are immovable partners
   };
   struct StepContext {
@@ -173,6 +180,20 @@ class World {
     SolveFunction solve;
     SolverSettings solver_settings;
     BoundSettings bounds;
+    double begin = 0.0;          // [s] of this part of the step
+    bool impact_events = false;  // times of impact are found
+    bool ways_only = false;      // bodies get a trajectory through the step instead of being moved at once
+  };
+
+  /// What takes part in one impact: bodies that act on each other through contacts and ties, and the pairs that strike.
+  struct Blow {
+    std::vector<std::uint32_t> members;  // movable slots, ascending
+    std::vector<GeometryPair> struck;    // sorted
+    std::vector<std::uint32_t>
+        inner;           // contacts among members, or with immovable bodies, that touch or strike
+    bool tired = false;  // a member has reached its bound of impacts
+    bool has(std::uint32_t slot) const { return std::binary_search(members.begin(), members.end(), slot); }
+    bool strikes(GeometryPair pair) const { return std::binary_search(struck.begin(), struck.end(), pair); }
   };
 
   // world.cpp: slots and links.
@@ -195,9 +216,12 @@ class World {
   void split_surface_pairs();
   /// The boxes came apart, or this triangle is none of those that the other's new fat box meets.
   bool is_lost(GeometryPair pair) const;
+  /// Pairs of geometries with a new box, sorted.
+  void find_pairs();
   void update_contacts(const StepContext& step);
+  void update_contact(std::uint32_t index, const StepContext& step);
   void refresh_active();
-  void build_islands();
+  void build_islands(const StepContext& step);
   void advance_islands(const StepContext& step);
   void update_boxes(const StepContext& step);
   void update_report();
@@ -212,7 +236,7 @@ class World {
   /// Where the geometry, or a contact of it, can be while the body turns through a step of h.
   Aabb contact_bounds(const Geometry& geometry, double h) const;
   Contact make_contact(GeometryPair pair) const;
-  double pair_margin(const Contact& contact, double h) const;
+  double pair_margin(Contact& contact, const StepContext& step) const;
 
   // flight_step.cpp: free bodies.
   bool aloft(std::uint32_t slot) const { return free_[slot].state == FreeBody::State::aloft; }
@@ -220,6 +244,11 @@ class World {
   void advance_free(std::uint32_t slot, const StepContext& step);
   void follow_flight(std::uint32_t slot);
   void integrate_free(std::uint32_t slot, const StepContext& step);
+  void take_off(std::uint32_t slot);
+  /// Its trajectory from where the step is now, instead of the motion itself.
+  void note_way(std::uint32_t slot, const StepContext& step);
+  /// The same, of a body that was moved already, from `start`.
+  void note_end(std::uint32_t slot, const Motion& start, const StepContext& step);
   /// At the end of a step: lets go of a body that meets nobody for some steps. False: it has to be visited.
   bool try_lift(std::uint32_t slot);
   bool lift(std::uint32_t slot, std::uint64_t now);
@@ -236,12 +265,15 @@ class World {
   bool advance_springs(std::size_t island, const StepContext& step);
   bool has_springs_only(std::size_t island) const;
   SmoothBody smooth_body(std::uint32_t slot) const;
-  bool store_smooth_motion(double h);
+  bool store_smooth_motion(const StepContext& step);
 
   // island_step.cpp: one island through one step.
   void advance_connected(std::size_t island, const StepContext& step);
   void bounce(ContactProblem& problem);
   void build_problem(std::size_t island, const StepContext& step);
+  void begin_problem(double h);
+  void end_problem();
+  void solve_problem(const StepContext& step);
   std::uint32_t problem_body(std::uint32_t slot, double h);
   void add_contact_rows(std::uint32_t contact_index, double h);
   void add_tie_rows(std::uint32_t tie_index, double h);
@@ -251,9 +283,40 @@ class World {
   void move_bodies(const StepContext& step);
   /// Of forces that are the same at every orientation, and of gravity.
   Vec3 acceleration_of(std::uint32_t slot) const;
+  /// Moves the body along the path, or notes that it will be.
+  void move_body(std::uint32_t slot, const VelocityPath& path, const Vec3& shift, const Vec3& turn,
+                 const StepContext& step);
   void velocities_after_forces(std::uint32_t slot, double h, Vec3& v, Vec3& L) const;
   static bool is_finite(const Motion& motion);
   void contain(std::uint32_t slot, const Motion& last_good);
+
+  // impact_step.cpp: the impacts of one step, in order of time.
+  /// Whether the pair is left out of the smooth problem: it may strike, or is on its way apart.
+  bool flies(const Contact& contact, double h) const;
+  /// Of b relative to a, by forces [m/s^2].
+  Vec3 relative_acceleration(const Contact& contact) const;
+  void begin_impacts(const StepContext& step);
+  void advance_impacts(const StepContext& step);
+  void strike(const ImpactEvent& event, const StepContext& step);
+  Blow gather_blow(const ImpactEvent& event);
+  void join(Blow& blow, std::uint32_t a, std::uint32_t b);
+  void absorb_tired(Blow& blow);
+  void move_to(const Blow& blow, double time);
+  void update_contacts_of(Blow& blow, const StepContext& rest);
+  void resolve_blow(const Blow& blow, const StepContext& rest);
+  void build_blow_problem(const Blow& blow);
+  void store_blow();
+  /// Bounces of the pair that are still to come end within the rest of the step.
+  bool ends_bouncing(std::uint32_t contact_index, const StepContext& rest) const;
+  void continue_from(const Blow& blow, const StepContext& rest);
+  void foresee(const Blow& blow, const StepContext& rest);
+  void foresee(const Contact& contact, const StepContext& rest);
+  void renew_boxes_within(const Blow& blow, const StepContext& rest);
+  void follow_those_aloft();
+  /// The body goes on through the step on the flight that it has.
+  void set_flight_trajectory(std::uint32_t slot);
+  void index_contacts();
+  void index_contacts_from(std::uint32_t first);
 
   Options options_;
   std::uint64_t step_count_ = 0;

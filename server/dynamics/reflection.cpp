@@ -1,0 +1,323 @@
+// See reflection.h. Per pass, on the violated set V with A = J_V M^-1 J_V^T and u the velocities before it:
+//   compression  0 <= p_n  perp  u_n + (A p)_n >= 0, Coulomb friction;   expansion  p_n = e p_n,c, friction in mu p_n;
+//   dE = p.u + p.A p / 2; if compression and expansion together gain, the expansion is shortened until dE = 0.
+#include "dynamics/reflection.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+#include "dynamics/best_impulses.h"
+#include "dynamics/interior_point.h"
+#include "dynamics/point_impact.h"
+#include "dynamics/solver.h"
+#include "math/rotation.h"
+
+namespace tumble {
+namespace {
+
+/// Approach [m/s] relative to the speeds involved below which a contact counts as at rest: rounding without friction,
+/// the accuracy of the impulses with it.
+constexpr double kAtRest = 1e-13, kAtRestWithFriction = 1e-10;
+/// More contacts than this at once are left to the interior point method.
+constexpr std::size_t kDense = 64;
+constexpr int kFrictionSweeps = 100;
+
+Vec3 contact_velocity(const ContactProblem& problem, const PointContact& c) {
+  const Vec3 u = relative_velocity(problem.bodies[c.a], problem.bodies[c.b], c.rA, c.rB);
+  return {u.dot(c.n), u.dot(c.t1), u.dot(c.t2)};
+}
+
+Vec3 in_world(const PointContact& c, const Vec3& p) {
+  return p.x() * c.n + p.y() * c.t1 + p.z() * c.t2;
+}
+
+void apply(ContactProblem& problem, const PointContact& c, const Vec3& p) {
+  apply_impulse(problem.bodies[c.a], problem.bodies[c.b], c.rA, c.rB, in_world(c, p));
+}
+
+/// Inverse mass at the point, contact frame: the change of its velocity for a unit impulse at it.
+Mat3 inverse_mass(const ContactProblem& problem, const PointContact& c) {
+  const SolverBody &A = problem.bodies[c.a], &B = problem.bodies[c.b];
+  const Mat3 RA = cross_matrix(c.rA), RB = cross_matrix(c.rB);
+  Mat3 frame;
+  frame << c.n, c.t1, c.t2;
+  const Mat3 K = frame.transpose() *
+                 ((A.inv_mass + B.inv_mass) * Mat3::Identity() + RA * A.inv_I_W * RA.transpose() +
+                  RB * B.inv_I_W * RB.transpose()) *
+                 frame;
+  return 0.5 * (K + K.transpose());
+}
+
+/// One pass over the contacts that approach.
+class Pass {
+ public:
+  Pass(ContactProblem& problem, const std::vector<std::uint32_t>& violated)
+      : problem_(problem), violated_(violated), p_(violated.size(), Vec3::Zero()) {
+    for (const std::uint32_t i : violated) {
+      u_before_.push_back(contact_velocity(problem, problem.contacts[i]));
+      frictionless_ = frictionless_ && !(problem.contacts[i].friction > 0.0);
+    }
+  }
+
+  /// Returns whether energy had to be clamped.
+  bool reflect() {
+    if (violated_.size() == 1) {
+      take(0, point_impact(contact(0), u_before_[0]));
+      return false;
+    }
+    compress();
+    return expand();
+  }
+
+  void compress() {
+    if (frictionless_ && violated_.size() <= kDense) {
+      compress_frictionless();
+    } else {
+      compress_by_interior_point();
+    }
+  }
+
+ private:
+  Vec3 point_impact(const PointContact& c, const Vec3& u) const {
+    if (frictionless_) return {-(1.0 + c.restitution) * u.x() * c.mass_n, 0.0, 0.0};
+    return solve_point_impact(inverse_mass(problem_, c), u, c.friction, c.restitution);
+  }
+
+  const PointContact& contact(std::size_t k) const { return problem_.contacts[violated_[k]]; }
+
+  void take(std::size_t k, const Vec3& p) {
+    PointContact& c = problem_.contacts[violated_[k]];
+    p_[k] += p;
+    c.lambda += p;
+    apply(problem_, c, p);
+  }
+
+  /// Normal rows of A.
+  Eigen::MatrixXd normal_matrix() {
+    const auto n = static_cast<Eigen::Index>(violated_.size());
+    Eigen::MatrixXd A = Eigen::MatrixXd::Zero(n, n);
+    for (Eigen::Index j = 0; j < n; ++j) {
+      const PointContact& cj = contact(static_cast<std::size_t>(j));
+      for (Eigen::Index i = j; i < n; ++i) {
+        const PointContact& ci = contact(static_cast<std::size_t>(i));
+        double sum = 0.0;
+        for (const bool i_on_b : {false, true}) {
+          for (const bool j_on_b : {false, true}) {
+            const std::uint32_t body = i_on_b ? ci.b : ci.a;
+            if (body != (j_on_b ? cj.b : cj.a)) continue;
+            const SolverBody& B = problem_.bodies[body];
+            const Vec3 arm_i = (i_on_b ? ci.rB : ci.rA).cross(ci.n);
+            const Vec3 arm_j = (j_on_b ? cj.rB : cj.rA).cross(cj.n);
+            const double part = B.inv_mass * ci.n.dot(cj.n) + arm_i.dot(B.inv_I_W * arm_j);
+            sum += i_on_b == j_on_b ? part : -part;
+          }
+        }
+        A(i, j) = A(j, i) = sum;
+      }
+    }
+    return A;
+  }
+
+  /// min p.A p / 2 + u.p over p >= 0 by active sets (Lawson, Hanson 1974, ch. 23): exact up to rounding. A contact whose
+  /// velocity the acting ones already take away never joins, so the acting rows stay independent.
+  void compress_frictionless() {
+    const Eigen::MatrixXd A = normal_matrix();
+    const Eigen::Index n = A.rows();
+    Eigen::VectorXd u(n), p = Eigen::VectorXd::Zero(n);
+    for (Eigen::Index i = 0; i < n; ++i) u[i] = u_before_[static_cast<std::size_t>(i)].x();
+    const double rest = kAtRest * u.cwiseAbs().maxCoeff();
+    std::vector<Eigen::Index> acting;
+    for (Eigen::Index round = 0; round < 3 * n; ++round) {
+      const Eigen::VectorXd left = u + A * p;
+      Eigen::Index worst = -1;
+      for (Eigen::Index i = 0; i < n; ++i) {
+        const bool acts = std::find(acting.begin(), acting.end(), i) != acting.end();
+        if (!acts && left[i] < (worst < 0 ? -rest : left[worst])) worst = i;
+      }
+      if (worst < 0) break;
+      acting.push_back(worst);
+      while (!acting.empty()) {
+        const Eigen::VectorXd wanted = solve_acting(A, u, acting);
+        const auto pulls =
+            std::find_if(acting.begin(), acting.end(), [&](Eigen::Index i) { return wanted[i] <= 0.0; });
+        if (pulls == acting.end()) {
+          p = wanted;
+          break;
+        }
+        // As far towards it as no impulse pulls; whoever is at zero then acts no more.
+        double share = 1.0;
+        for (const Eigen::Index i : acting) {
+          if (wanted[i] <= 0.0) share = std::min(share, p[i] / (p[i] - wanted[i]));
+        }
+        p += share * (wanted - p);
+        std::erase_if(acting, [&](Eigen::Index i) {
+          if (wanted[i] > 0.0 || p[i] > 1e-15 * p.maxCoeff()) return false;
+          p[i] = 0.0;
+          return true;
+        });
+      }
+    }
+    for (Eigen::Index i = 0; i < n; ++i) take(static_cast<std::size_t>(i), Vec3(p[i], 0.0, 0.0));
+  }
+
+  static Eigen::VectorXd solve_acting(const Eigen::MatrixXd& A, const Eigen::VectorXd& u,
+                                      const std::vector<Eigen::Index>& acting) {
+    const auto m = static_cast<Eigen::Index>(acting.size());
+    Eigen::MatrixXd S(m, m);
+    Eigen::VectorXd r(m);
+    for (Eigen::Index i = 0; i < m; ++i) {
+      r[i] = -u[acting[static_cast<std::size_t>(i)]];
+      for (Eigen::Index j = 0; j < m; ++j) {
+        S(i, j) = A(acting[static_cast<std::size_t>(i)], acting[static_cast<std::size_t>(j)]);
+      }
+    }
+    const Eigen::VectorXd x = S.llt().solve(r);
+    Eigen::VectorXd p = Eigen::VectorXd::Zero(A.rows());
+    for (Eigen::Index i = 0; i < m; ++i) p[acting[static_cast<std::size_t>(i)]] = x[i];
+    return p;
+  }
+
+  void compress_by_interior_point() {
+    ContactProblem part;
+    part.h = 1.0;
+    part.bodies = problem_.bodies;
+    double speed = 0.0;
+    for (std::size_t k = 0; k < violated_.size(); ++k) {
+      PointContact c = contact(k);
+      c.separation = 0.0;
+      c.lambda.setZero();
+      part.contacts.push_back(c);
+      speed = std::max(speed, std::sqrt(u_before_[k].squaredNorm()));
+    }
+    for (SolverBody& body : part.bodies) {
+      body.v0 = body.v;
+      body.w0 = body.w;
+    }
+    prepare(part, {.slop = 0.0, .push_fraction = 0.0, .push_speed = 0.0});
+    const double wanted = 0.1 * kAtRestWithFriction * speed;
+    BestImpulses best(part);
+    solve_interior_point(part, wanted, best);
+    best.restore();
+    if (best.residual() > wanted) {
+      SolverSettings settings;
+      settings.max_sweeps = 100;
+      settings.tolerance = wanted;
+      solve_pgs(part, settings);
+      best.offer();
+      best.restore();
+    }
+    for (std::size_t k = 0; k < violated_.size(); ++k) take(k, into_cone(part.contacts[k]));
+  }
+
+  /// The impulse, made to pull nothing and rub no more than it may.
+  static Vec3 into_cone(const PointContact& c) {
+    const double p_n = std::max(0.0, c.lambda.x()), limit = c.friction * p_n;
+    const double p_t = std::sqrt(c.lambda.y() * c.lambda.y() + c.lambda.z() * c.lambda.z());
+    const double share = p_t > limit ? limit / p_t : 1.0;
+    return {p_n, share * c.lambda.y(), share * c.lambda.z()};
+  }
+
+  bool expand() {
+    const std::vector<Vec3> compression = p_;
+    for (std::size_t k = 0; k < violated_.size(); ++k) {
+      take(k, Vec3(contact(k).restitution * compression[k].x(), 0.0, 0.0));
+    }
+    if (!frictionless_) rub(compression);
+    return clamp_energy(compression);
+  }
+
+  /// Friction of the expansion in discs of fixed size: a convex problem, one contact at a time.
+  void rub(const std::vector<Vec3>& compression) {
+    std::vector<Mat3> K;
+    for (std::size_t k = 0; k < violated_.size(); ++k) K.push_back(inverse_mass(problem_, contact(k)));
+    for (int sweep = 0; sweep < kFrictionSweeps; ++sweep) {
+      double change = 0.0, size = 0.0;
+      for (std::size_t k = 0; k < violated_.size(); ++k) {
+        const PointContact& c = contact(k);
+        const Eigen::Matrix2d K_t = K[k].bottomRightCorner<2, 2>();
+        const Eigen::Vector2d old = (p_[k] - compression[k]).tail<2>();
+        const Eigen::Vector2d u = contact_velocity(problem_, c).tail<2>() - K_t * old;
+        const double radius = c.friction * c.restitution * compression[k].x();
+        const Eigen::Vector2d p_t = solve_friction_disc(K_t, u, radius);
+        take(k, Vec3(0.0, p_t.x() - old.x(), p_t.y() - old.y()));
+        change = std::max(change, (p_t - old).cwiseAbs().maxCoeff());
+        size = std::max(size, radius);
+      }
+      if (change <= 1e-15 * size) break;
+    }
+  }
+
+  /// p.(u before + u after) / 2 summed up: what the impulses did to the kinetic energy [J].
+  double energy_change(const std::vector<Vec3>& p, const std::vector<Vec3>& u0) const {
+    double sum = 0.0;
+    for (std::size_t k = 0; k < violated_.size(); ++k) {
+      sum += 0.5 * p[k].dot(u0[k] + contact_velocity(problem_, contact(k)));
+    }
+    return sum;
+  }
+
+  bool clamp_energy(const std::vector<Vec3>& compression) {
+    double scale = 0.0;
+    for (std::size_t k = 0; k < violated_.size(); ++k) scale += std::abs(p_[k].dot(u_before_[k]));
+    const double whole = energy_change(p_, u_before_);
+    if (whole <= 1e-14 * scale) return false;
+    // dE(s) = c + b s + a s^2 for the share s of the expansion, from its values at 0 and 1 and the work of u_c.
+    std::vector<Vec3> expansion;
+    for (std::size_t k = 0; k < violated_.size(); ++k) expansion.push_back(p_[k] - compression[k]);
+    for (std::size_t k = 0; k < violated_.size(); ++k) take(k, -expansion[k]);
+    const double c = std::min(0.0, energy_change(compression, u_before_));
+    double b = 0.0;
+    for (std::size_t k = 0; k < violated_.size(); ++k) {
+      b += expansion[k].dot(contact_velocity(problem_, contact(k)));
+    }
+    const double a = whole - b - c;
+    const double root = (-b + std::sqrt(std::max(0.0, b * b - 4.0 * a * c))) / (2.0 * a);
+    const double share = a > 0.0 ? std::clamp(root, 0.0, 1.0) : 0.0;
+    for (std::size_t k = 0; k < violated_.size(); ++k) take(k, share * expansion[k]);
+    return true;
+  }
+
+  ContactProblem& problem_;
+  const std::vector<std::uint32_t>& violated_;
+  std::vector<Vec3> p_, u_before_;  // contact frames: impulses so far, velocities before the pass
+  bool frictionless_ = true;
+};
+
+}  // namespace
+
+ReflectionReport reflect(ContactProblem& problem, const ReflectionSettings& settings) {
+  ReflectionReport report;
+  double speed = 0.0;
+  bool friction = false;
+  for (PointContact& c : problem.contacts) {
+    c.lambda.setZero();
+    speed = std::max(speed, std::sqrt(contact_velocity(problem, c).squaredNorm()));
+    friction = friction || c.friction > 0.0;
+  }
+  const double rest = (friction ? kAtRestWithFriction : kAtRest) * speed;
+  std::vector<std::uint32_t> violated;
+  const auto find_violated = [&] {
+    violated.clear();
+    for (std::uint32_t i = 0; i < problem.contacts.size(); ++i) {
+      const PointContact& c = problem.contacts[i];
+      if (c.mass_n > 0.0 && contact_velocity(problem, c).x() < -rest) violated.push_back(i);
+    }
+  };
+  for (find_violated(); !violated.empty(); find_violated()) {
+    if (report.passes == settings.max_passes) {
+      report.capped = true;
+      violated.clear();
+      for (std::uint32_t i = 0; i < problem.contacts.size(); ++i) {
+        if (problem.contacts[i].mass_n > 0.0) violated.push_back(i);
+      }
+      Pass(problem, violated).compress();
+      break;
+    }
+    ++report.passes;
+    if (Pass(problem, violated).reflect()) ++report.clamped;
+  }
+  return report;
+}
+
+}  // namespace tumble

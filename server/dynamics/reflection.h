@@ -1,0 +1,25 @@
+// Simultaneous impacts: the velocities after a blow that several contacts take part in. Generalized reflections (Smith,
+// Kaufman, Vouga, Tamstorf, Grinspun, "Reflections on simultaneous impact", 2012): only contacts that approach act, all
+// of them at once, and again, until none approaches. Each pass is Poisson's: compression to rest with Coulomb friction,
+// then the restitution of every normal impulse, with friction solved anew.
+#pragma once
+
+#include "dynamics/contact_problem.h"
+
+namespace tumble {
+
+struct ReflectionSettings {
+  int max_passes = 32;  ///< Then one inelastic solve of all contacts ends it.
+};
+
+struct ReflectionReport {
+  int passes = 0;
+  bool capped = false;  ///< The passes ran out.
+  int clamped = 0;      ///< Passes whose expansion was shortened because it would have gained energy.
+};
+
+/// In: a prepared problem whose contacts touch now; velocities v, w before the blow. Out: those after it; lambda the
+/// impulses. Separations, bounds and rows play no part. Momentum is conserved to round-off, kinetic energy never rises.
+ReflectionReport reflect(ContactProblem& problem, const ReflectionSettings& settings = {});
+
+}  // namespace tumble

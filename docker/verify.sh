@@ -161,7 +161,7 @@ clients_are_heard() { # a command's answer and the body's state cross from conta
   compose exec -T client tumble set ball --at 0 0 50 &&
     compose exec -T client tumble push ball --force 0 0 30 --seconds 0.5 && height | awk '{ exit !($1 > 20) }'
 }
-recorder_hears() { compose exec -T recorder sh -c 'grep -c TUMBLE_STATE /data/bus.lcm* && grep -c TUMBLE_ACK /data/bus.lcm*'; }
+recorder_hears() { compose exec -T recorder sh -c 'grep -c TUMBLE_STATE /data/bus.lcm && grep -c TUMBLE_ACK /data/bus.lcm'; }
 machine_hears() { # a process outside of every container, in the network that "host" mode shares
   docker create --name "copy$$" "$IMAGE" && containers+=("copy$$") && docker cp "copy$$:/usr/local/bin/tumble-server" "$work/" &&
     nsenter -t "$(cat "$work/pid")" -n "$work/tumble-server" --health

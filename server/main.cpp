@@ -9,6 +9,7 @@
 #include <csignal>
 #include <cstdio>
 #include <exception>
+#include <functional>
 #include <optional>
 #include <stdexcept>
 #include <system_error>
@@ -112,18 +113,22 @@ recording_t make_head(const Arguments& arguments, const ServerSettings& settings
   return head;
 }
 
-ServerSettings make_settings(const Arguments& arguments, const std::string& scene_name, double time_step) {
+/// `rate`: unless the arguments say another.
+ServerSettings make_settings(const Arguments& arguments, const std::string& scene_name, double rate) {
   ServerSettings settings;
   settings.world_name = arguments.world_name.empty() ? std::string(kDefaultWorld) : arguments.world_name;
   settings.scene_name = scene_name;
   settings.publish_rate = arguments.publish_rate;
   settings.steps = arguments.steps;
-  settings.rate = arguments.fast ? 0.0 : arguments.rate > 0.0 ? arguments.rate : 1.0 / time_step;
+  settings.rate = arguments.fast ? 0.0 : arguments.rate > 0.0 ? arguments.rate : rate;
   return settings;
 }
 
+/// Called once the bus works, so that nothing is written by a server that can't start.
+using MakeRecorder = std::function<Recorder()>;
+
 int run_server(Simulation simulation, CommandInbox inbox, const ServerSettings& settings,
-               std::optional<Recorder> recorder, const Arguments& arguments, Clock& clock) {
+               const MakeRecorder& make_recorder, const Arguments& arguments, Clock& clock) {
   Bus bus(parse_bus_url(arguments.lcm_url), settings.world_name);
   Outbox outbox(
       settings.world_name, bus.payload_limit(), clock,
@@ -131,7 +136,7 @@ int run_server(Simulation simulation, CommandInbox inbox, const ServerSettings& 
       arguments.packed ? Encoding::packed : Encoding::exact,
       static_cast<std::int64_t>(kSpread * 1e9 / settings.publish_rate));
   Server server(std::move(simulation), settings, clock, bus, outbox, std::move(inbox));
-  if (recorder) server.set_recorder(std::move(*recorder));
+  if (make_recorder) server.set_recorder(make_recorder());
   fmt::print(stderr, "{}\n", greeting(settings, bus, server.world()));
   outbox.start();
   RunWatch watch(clock);
@@ -165,13 +170,16 @@ int run_resumed(const Arguments& arguments, Clock& clock) {
                     "  head -c {1} {0} > sound.lcm && tumble-server --resume sound.lcm",
                     arguments.resume, replay.damage()->offset));
   }
-  recording_t head = replay.head();
+  const recording_t& head = replay.head();
   Arguments with_log = arguments;
   if (with_log.world_name.empty()) with_log.world_name = head.world;
-  const ServerSettings settings = make_settings(with_log, head.scene_name, head.dt);
-  EventLogWriter log(arguments.resume, replay.log_size(), replay.log_events());
-  return run_server(std::move(replay.simulation()), std::move(replay.inbox()), settings,
-                    Recorder(std::move(log), head, replay.checksum()), arguments, clock);
+  const ServerSettings settings = make_settings(with_log, head.scene_name, head.rate);
+  const auto go_on = [&] {
+    return Recorder(EventLogWriter(arguments.resume, replay.log_size(), replay.log_events()), head,
+                    replay.checksum());
+  };
+  return run_server(std::move(replay.simulation()), std::move(replay.inbox()), settings, go_on, arguments,
+                    clock);
 }
 
 int serve_scene(const Arguments& arguments, Clock& clock) {
@@ -182,17 +190,16 @@ int serve_scene(const Arguments& arguments, Clock& clock) {
   }
   if (arguments.headless()) return run_headless(build_world(scene), arguments, clock);
   const std::string name = arguments.scene.empty() ? "demo " + arguments.demo : arguments.scene;
-  const ServerSettings settings = make_settings(arguments, name, scene.options.time_step);
+  const ServerSettings settings = make_settings(arguments, name, 1.0 / scene.options.time_step);
   if (arguments.record.empty()) {
-    return run_server(Simulation(build_world(scene), random_session()), {}, settings, std::nullopt, arguments,
-                      clock);
+    return run_server(Simulation(build_world(scene), random_session()), {}, settings, {}, arguments, clock);
   }
   // What runs is what stands in the log.
   const std::string text = write_sdf(scene);
   Simulation simulation(build_world(read_sdf_text(text, name, ".").scene), random_session());
-  EventLogWriter log(arguments.record);
-  Recorder recorder(std::move(log), make_head(arguments, settings, text, simulation, clock));
-  return run_server(std::move(simulation), {}, settings, std::move(recorder), arguments, clock);
+  const recording_t head = make_head(arguments, settings, text, simulation, clock);
+  const auto begin = [&] { return Recorder(EventLogWriter(arguments.record), head); };
+  return run_server(std::move(simulation), {}, settings, begin, arguments, clock);
 }
 
 int check_health(const Arguments& arguments) {

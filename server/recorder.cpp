@@ -37,8 +37,8 @@ void Recorder::note_command(const Command& command, std::int64_t start_step, std
                             std::int64_t utime) {
   std::visit(
       [&](auto message) {
-        // The session keeps a live server from obeying a log that is played to it.
-        message.session = session;
+        // A session keeps a live server from obeying a log that is played to it.
+        if (message.session == 0) message.session = session;
         message.start_step = start_step;
         const bool is_force = std::is_same_v<decltype(message), force_command_t>;
         write(utime, is_force ? force_channel_ : control_channel_, message);

@@ -21,7 +21,8 @@ class Recorder {
   /// Starts a log: writes `head`.
   Recorder(EventLogWriter log, const recording_t& head);
 
-  /// `command` acts at `start_step` of `session`: a later step than now if it was accepted to wait, or now.
+  /// `command` acts at `start_step`: a later step than now if it was accepted to wait, or now. `session` is the present
+  /// one.
   void note_command(const Command& command, std::int64_t start_step, std::int64_t session,
                     std::int64_t utime);
   void end_step(const Simulation& simulation, std::int64_t utime);

@@ -62,14 +62,13 @@ Server::Server(Simulation simulation, ServerSettings settings, Clock& clock, Bus
       stage_done_([this](Stage stage) { meter_.end_stage(stage, clock_.now_ns()); }),
       host_(host_name()) {
   const std::string& name = settings_.world_name;
-  bus_.subscribe(channel_name(name, kForceSuffix), [this](Bytes bytes) { inbox_.receive_force(bytes); });
-  bus_.subscribe(channel_name(name, kControlSuffix), [this](Bytes bytes) { inbox_.receive_control(bytes); });
+  bus_.subscribe(channel_name(name, kForceSuffix),
+                 [this](Bytes bytes) { hear(&CommandInbox::receive_force, bytes); });
+  bus_.subscribe(channel_name(name, kControlSuffix),
+                 [this](Bytes bytes) { hear(&CommandInbox::receive_control, bytes); });
   bus_.subscribe(channel_name(name, kQuerySuffix), [this](Bytes bytes) { note_query(bytes); });
   bus_.subscribe(channel_name(name, kHeartbeatSuffix), [this](Bytes bytes) { notice_heartbeat(bytes); });
-  inbox_.on_waiting([this](const Command& command, std::int64_t start_step) {
-    record(
-        [&](Recorder& r) { r.note_command(command, start_step, simulation_.session(), clock_.wall_us()); });
-  });
+  inbox_.on_waiting([this](const Command& command, std::int64_t start_step) { note(command, start_step); });
 }
 
 void Server::tick() {
@@ -110,14 +109,11 @@ void Server::wait() {
 void Server::receive_commands() {
   inbox_.set_now(simulation_.session(), simulation_.now_step());
   bus_.receive(kReceiveBudget);
-  const std::vector<Command> due = inbox_.take_due();
-  record([&](Recorder& r) {
-    for (const Command& command : due) {
-      r.note_command(command, simulation_.now_step(), simulation_.session(), clock_.wall_us());
-    }
-    r.flush();  // nothing is answered that could still be lost
-  });
-  for (const Command& command : due) apply(command);
+  for (const Command& command : inbox_.take_due()) {
+    note(command, simulation_.now_step());
+    apply(command);
+  }
+  record([](Recorder& r) { r.flush(); });  // nothing is answered that could still be lost
   // Who asks again while the world stands still may have missed the state as well as the answer.
   if (inbox_.counters().repeated != std::exchange(repeated_, inbox_.counters().repeated) &&
       simulation_.paused()) {
@@ -126,6 +122,16 @@ void Server::receive_commands() {
   send_answers();
   answer_queries();
   log_damaged();
+}
+
+void Server::hear(void (CommandInbox::*receive)(Bytes), Bytes bytes) {
+  const std::uint64_t damaged = inbox_.counters().damaged();
+  (inbox_.*receive)(bytes);
+  if (inbox_.counters().damaged() != damaged) damaged_sender_ = bus_.sender();
+}
+
+void Server::note(const Command& command, std::int64_t start_step) {
+  record([&](Recorder& r) { r.note_command(command, start_step, simulation_.session(), clock_.wall_us()); });
 }
 
 void Server::apply(const Command& command) {
@@ -172,7 +178,8 @@ void Server::answer_queries() {
 void Server::log_damaged() {
   const std::uint64_t damaged = inbox_.counters().damaged();
   if (damaged == damaged_logged_ || clock_.now_ns() < next_damage_log_) return;
-  spdlog::warn("{} damaged command messages since the start", damaged);
+  spdlog::warn("{} damaged command messages since the start{}", damaged,
+               damaged_sender_.empty() ? "" : ", the last from " + damaged_sender_);
   damaged_logged_ = damaged;
   next_damage_log_ = clock_.now_ns() + period_ns(1.0);
 }
@@ -268,6 +275,7 @@ void Server::send_stats() {
   message.steps_skipped = pacer_.steps_skipped();
   fill_world_stats(world(), simulation_.start_sums(), message);
   fill_network_stats(inbox_.counters(), sent, message);
+  message.commands_dropped = bus_.dropped();
   post(channel_name(settings_.world_name, kStatsSuffix), message);
 }
 

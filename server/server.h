@@ -56,6 +56,8 @@ class Server {
 
  private:
   void receive_commands();
+  void hear(void (CommandInbox::*receive)(Bytes), Bytes bytes);
+  void note(const Command& command, std::int64_t start_step);
   void apply(const Command& command);
   void send_answers();
   void note_query(Bytes bytes);
@@ -106,6 +108,7 @@ class Server {
   std::function<void(Stage)> stage_done_;
   std::function<void(const StepReport&)> observer_;
   std::uint64_t damaged_logged_ = 0;
+  std::string damaged_sender_;
   std::int64_t next_damage_log_ = 0;  // now_ns
   std::string host_;
   std::map<std::string, std::int64_t>

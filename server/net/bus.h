@@ -44,6 +44,11 @@ class Bus {
   /// Returns when a message waits or `ns` have passed, whichever is first.
   void wait(std::int64_t ns) const;
 
+  /// Of the messages that waited to be received, those the system had no room for; 0 where it doesn't say.
+  std::uint32_t dropped() const { return socket_ ? socket_->dropped() : 0; }
+  /// Who sent the message that is being handled; empty where LCM doesn't say.
+  std::string sender() const { return socket_ ? socket_->sender() : ""; }
+
   std::size_t payload_limit() const { return payload_limit_; }  ///< [bytes] for everything the server sends
   const BusAddress& address() const { return address_; }
   const std::string& interface() const { return interface_; }  ///< Of the multicast route; empty if unknown.

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <cstring>
 #include <optional>
 #include <system_error>
 
@@ -79,6 +80,7 @@ void join(int socket, const BusAddress& address) {
   const int yes = 1;
   set_option(socket, SOL_SOCKET, SO_REUSEADDR, yes);
   set_option(socket, SOL_SOCKET, SO_REUSEPORT, yes);
+  set_option(socket, SOL_SOCKET, SO_RXQ_OVFL, yes);
   set_option(socket, SOL_SOCKET, SO_RCVBUF, std::max(address.receive_buffer, kReceiveBuffer));
   sockaddr_in group{};
   group.sin_family = AF_INET;
@@ -90,6 +92,23 @@ void join(int socket, const BusAddress& address) {
   membership.imr_multiaddr = group.sin_addr;
   membership.imr_interface.s_addr = htonl(INADDR_ANY);
   if (!set_option(socket, IPPROTO_IP, IP_ADD_MEMBERSHIP, membership)) fail("IP_ADD_MEMBERSHIP");
+}
+
+/// Room for the one thing that the kernel says beside a datagram.
+union Control {
+  char bytes[CMSG_SPACE(sizeof(std::uint32_t))];
+  cmsghdr align;
+};
+
+/// The kernel's count of dropped datagrams, if it came with this one.
+std::optional<std::uint32_t> read_dropped(msghdr& header) {
+  for (cmsghdr* part = CMSG_FIRSTHDR(&header); part != nullptr; part = CMSG_NXTHDR(&header, part)) {
+    if (part->cmsg_level != SOL_SOCKET || part->cmsg_type != SO_RXQ_OVFL) continue;
+    std::uint32_t count = 0;
+    std::memcpy(&count, CMSG_DATA(part), sizeof count);
+    return count;
+  }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -112,9 +131,17 @@ CommandSocket::~CommandSocket() {
   ::close(socket_);
 }
 
+std::string CommandSocket::sender() const {
+  std::array<char, INET_ADDRSTRLEN> address{};
+  ::inet_ntop(AF_INET, &sender_.sin_addr, address.data(), address.size());
+  return std::string(address.data()) + ":" + std::to_string(ntohs(sender_.sin_port));
+}
+
 int CommandSocket::receive(int budget, const Handler& handler) {
   std::array<mmsghdr, kBatch> headers;
   std::array<iovec, kBatch> slices;
+  std::array<sockaddr_in, kBatch> senders;
+  std::array<Control, kBatch> controls;
   int total = 0;
   while (total < budget) {
     const int wanted = std::min(kBatch, budget - total);
@@ -123,11 +150,17 @@ int CommandSocket::receive(int budget, const Handler& handler) {
       headers[i] = {};
       headers[i].msg_hdr.msg_iov = &slices[i];
       headers[i].msg_hdr.msg_iovlen = 1;
+      headers[i].msg_hdr.msg_name = &senders[i];
+      headers[i].msg_hdr.msg_namelen = sizeof senders[i];
+      headers[i].msg_hdr.msg_control = &controls[i];
+      headers[i].msg_hdr.msg_controllen = sizeof controls[i];
     }
     const int count =
         ::recvmmsg(socket_, headers.data(), static_cast<unsigned>(wanted), MSG_DONTWAIT, nullptr);
     if (count <= 0) break;
     for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
+      dropped_ = read_dropped(headers[i].msg_hdr).value_or(dropped_);
+      sender_ = senders[i];
       const std::string_view bytes(reinterpret_cast<const char*>(slices[i].iov_base), headers[i].msg_len);
       if (const auto message = parse_message(bytes)) {
         handler(message->channel,

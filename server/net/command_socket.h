@@ -4,6 +4,8 @@
 // long. The kernel drops the rest before it takes up buffer.
 #pragma once
 
+#include <netinet/in.h>
+
 #include <cstdint>
 #include <functional>
 #include <string>
@@ -29,10 +31,16 @@ class CommandSocket {
   /// Hands every waiting message, at most `budget` datagrams, to `handler`; returns how many datagrams were read.
   int receive(int budget, const Handler& handler);
   int fd() const { return socket_; }
+  /// Datagrams that the kernel dropped since the start because the buffer was full.
+  std::uint32_t dropped() const { return dropped_; }
+  /// "address:port" of the sender of the message that is being handled, or was last.
+  std::string sender() const;
 
  private:
   int socket_ = -1;
   std::vector<std::uint8_t> buffers_;
+  sockaddr_in sender_{};
+  std::uint32_t dropped_ = 0;
 };
 
 }  // namespace tumble

@@ -73,6 +73,13 @@ def test_garbage_datagrams_do_no_harm(free_bodies, wire):
     assert free_bodies.running
 
 
+def test_damage_is_logged_with_its_sender(free_bodies, wire):
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:
+        sender.connect(GROUP)
+        sender.send(b"LC02\0\0\0\1TUMBLE_FORCE\0damaged")
+        free_bodies.wait_for_output(f"the last from {':'.join(map(str, sender.getsockname()))}")
+
+
 def test_a_storm_does_not_stop_the_steps(free_bodies, wire):
     before = wire.next("HEARTBEAT")
     for _ in range(2000):

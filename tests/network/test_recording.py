@@ -132,6 +132,13 @@ def test_what_is_no_recording_is_refused(tmp_path):
     assert done.returncode == 1 and "exists" in done.stderr and path.read_bytes() == b"not a log"
 
 
+def test_a_server_that_cannot_start_writes_nothing(tmp_path):
+    path = tmp_path / "run.lcm"
+    done = run_server("--demo", "cradle", "--record", path, "--steps", 1,
+                      wrapper=("unshare", "-n", "sh", "-c", 'ip link set lo up && exec "$@"', "sh"))
+    assert done.returncode == 1 and "ip route" in done.stderr and not path.exists()
+
+
 class Pusher:
     """Pushes a body; like the client libraries it sends every push until that is answered."""
 

@@ -59,10 +59,11 @@ def test_a_double_click_draws_the_world(start, wire, screen, tmp_path):
     start("--demo", "pyramid")
     wire.next("HEARTBEAT", 10.0)
     environment = {**screen, "TUMBLE_SPY_BUILD": str(tmp_path / "spy")}
-    with subprocess.Popen([ROOT / "clients/spy/tumble-spy"], env=environment, stdout=subprocess.DEVNULL,
-                          stderr=subprocess.DEVNULL) as spy:
+    said = tmp_path / "spy.log"
+    with open(said, "wb") as output, subprocess.Popen([ROOT / "clients/spy/tumble-spy"], env=environment, stdout=output,
+                                                      stderr=subprocess.STDOUT) as spy:
         try:
-            window = wait_for_window(screen, "LCM Spy", 90.0)
+            window = wait_for_window(screen, "LCM Spy", 180.0)
             time.sleep(3.0)  # its channels come in, sorted by name
 
             def click_next_row(rows=iter([2, 3, 2, 3, 1, 0] * 20)):

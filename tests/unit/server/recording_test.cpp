@@ -92,13 +92,18 @@ TEST_F(Recording, ComesOutTheSame) {
   step(20);
   EXPECT_EQ(apply(make_control(5, control_t::VERB_RESTORE, "b")).status, Status::invalid);
   EXPECT_EQ(apply(make_control(6, control_t::VERB_RESET)).status, Status::applied);
+  EXPECT_EQ(apply(make_push(8, moving_body())).status, Status::applied)
+      << "of the same tick, for any session";
+  Command late = make_push(9, moving_body());
+  late.session = std::get<force_command_t>(late.content).session = kSession;
+  EXPECT_EQ(apply(late).status, Status::wrong_session);
   step(20);
   EXPECT_EQ(apply(make_control(7, control_t::VERB_PAUSE)).status, Status::applied);
   Replay again = replay();
   EXPECT_FALSE(again.difference());
   EXPECT_FALSE(again.damage());
   EXPECT_EQ(again.steps(), 100);
-  EXPECT_EQ(again.commands(), 7);
+  EXPECT_EQ(again.commands(), 9);
   EXPECT_EQ(again.simulation().world().state_hash(), simulation_.world().state_hash());
   EXPECT_EQ(again.simulation().session(), kSession + 2);
   EXPECT_TRUE(again.simulation().paused());

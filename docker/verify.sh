@@ -108,7 +108,7 @@ start_engine() { # start_engine build: the machine's network, no bridge; start_e
     options=(--bridge=none --iptables=false --ip6tables=false --ip-forward=false --ip-masq=false)
   else # "host" mode containers find multicast on its loopback
     # shellcheck disable=SC2016 # the inner shell expands "$@"
-    inside+=(--net sh -c 'ip link set lo up multicast on && ip route add 224.0.0.0/4 dev lo && exec "$@"' sh)
+    inside+=(--net sh -c 'ip link set lo up multicast on && ip route add 224.0.0.0/4 dev lo src 127.0.0.1 && exec "$@"' sh)
   fi
   # Its own requests go to a closed port, so that a missing image fails at once.
   HTTP_PROXY=http://127.0.0.1:9 HTTPS_PROXY=http://127.0.0.1:9 "${inside[@]}" dockerd --log-level warn "${options[@]}" \
@@ -157,9 +157,10 @@ log_is_whole() { # the recording is closed to its last byte and repeats to the b
 }
 compose() { timeout 120 docker compose -f "$root/docker/compose.yaml" "${overrides[@]}" "$@"; }
 height() { compose exec -T client tumble list --json | sed -n 's/.*"name":"ball".*"position":\[[^,]*,[^,]*,\([^]]*\)\].*/\1/p'; }
-clients_are_heard() { # a command's answer and the body's state cross from container to container, both ways
-  compose exec -T client tumble set ball --at 0 0 50 &&
-    compose exec -T client tumble push ball --force 0 0 30 --seconds 0.5 && height | awk '{ exit !($1 > 20) }'
+clients_are_heard() { # commands, answers and states cross from container to container; 0.5 s are 120 steps
+  compose exec -T client sh -c 'tumble pause && tumble set ball --at 0 0 50 &&
+    tumble push ball --force 0 0 30 --seconds 0.5 && tumble step 120' && height | awk '{ exit !($1 > 51 && $1 < 53) }' &&
+    compose exec -T client tumble resume
 }
 recorder_hears() { compose exec -T recorder sh -c 'grep -c TUMBLE_STATE /data/bus.lcm && grep -c TUMBLE_ACK /data/bus.lcm'; }
 machine_hears() { # a process outside of every container, in the network that "host" mode shares

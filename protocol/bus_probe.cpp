@@ -114,7 +114,17 @@ bool loopback_is_up() {
 
 std::string route_repair() {
   const std::string up = loopback_is_up() ? "" : as_root("ip link set lo up") + " && ";
-  return up + as_root("ip route replace 224.0.0.0/4 dev lo");
+  return up + as_root("ip route replace 224.0.0.0/4 dev lo src 127.0.0.1");
+}
+
+/// What a connected socket sends over the loopback from another interface's address, kernels may drop as forged.
+bool has_foreign_source(int socket, const std::string& interface) {
+  constexpr std::uint32_t kLoopbackNetwork = 127;
+  sockaddr_in own{};
+  socklen_t length = sizeof own;
+  if (interface != "lo" || ::getsockname(socket, reinterpret_cast<sockaddr*>(&own), &length) != 0)
+    return false;
+  return ntohl(own.sin_addr.s_addr) >> 24 != kLoopbackNetwork && own.sin_addr.s_addr != INADDR_ANY;
 }
 
 std::string firewall_repair(const std::string& chain, const BusAddress& bus) {
@@ -172,13 +182,18 @@ void probe_echo(const BusAddress& bus, const Socket& sender, const Socket& recei
            "sending to " + name_group(bus) + " was refused: " + std::strerror(error) +
                " (a firewall rule on output?)",
            firewall_repair("OUTPUT", bus));
-  } else if (!wait_for_echo(receiver.get(), datagram, timeout)) {
+  } else if (wait_for_echo(receiver.get(), datagram, timeout)) {
+    result.echo_seconds = std::chrono::duration<double>(Clock::now() - start).count();
+  } else if (has_foreign_source(sender.get(), result.interface)) {
+    report(result, BusFault::no_echo,
+           "a datagram sent to " + name_group(bus) +
+               " over lo did not come back: the route gives it another interface's address as its source",
+           route_repair());
+  } else {
     report(result, BusFault::no_echo,
            "a datagram sent to " + name_group(bus) + " over " + result.interface +
                " did not come back (a firewall rule on input?)",
            firewall_repair("INPUT", bus));
-  } else {
-    result.echo_seconds = std::chrono::duration<double>(Clock::now() - start).count();
   }
 }
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """What the stream costs and how fresh it is, for 10, 1000 and 10 000 bodies that all move: prints Markdown.
 
-    tests/network/in_namespace PYTHON tests/bench/stream.py BUILD
+    tests/network/in_namespace PYTHON tests/bench/stream.py BUILD [BODIES...]
 
 The server runs in a network namespace of its own, a cable (veth, datagrams of at most 1400 bytes) away from the
 receiver. Rates of loss and ages are of a plain socket with the kernel's default buffer; `logger` is what lcm-logger, with
@@ -163,7 +163,7 @@ def main():
         lock = lock_step(folder)
         link = Link()
         try:
-            for count in (10, 1000, 10000):
+            for count in map(int, sys.argv[2:] or (10, 1000, 10000)):
                 for encoding in ("exact", "packed"):
                     lines.append(measure(link, folder, count, encoding))
                     print(lines[-1], file=sys.stderr)

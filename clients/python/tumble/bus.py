@@ -58,7 +58,7 @@ def probe(group: str, port: int, timeout: float = 0.3) -> None:
             sender.send(datagram)
         except OSError as error:
             reason = f"multicast to {group}:{port} does not work: {error.strerror}"
-            raise BusError(reason, "ip route replace 224.0.0.0/4 dev lo, or see: tumble doctor") from None
+            raise BusError(reason, "ip route replace 224.0.0.0/4 dev lo src 127.0.0.1, or see: tumble doctor") from None
         if not _wait_for(receiver, datagram, timeout):
             raise BusError(f"a datagram sent to {group}:{port} did not come back", "tumble doctor names it")
 

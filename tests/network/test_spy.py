@@ -1,5 +1,6 @@
 """lcm-spy with our types on a real (virtual) screen: a double-click on STATE opens the drawn world."""
 import os
+import pathlib
 import shutil
 import subprocess
 import time
@@ -17,14 +18,17 @@ def start_screen():
     missing = [tool for tool in TOOLS if shutil.which(tool) is None]
     if missing:
         pytest.skip(f"not installed: {', '.join(missing)}")
-    reader, writer = os.pipe()
-    with subprocess.Popen(["Xvfb", "-displayfd", str(writer), "-screen", "0", "1280x900x24", "-nolisten", "tcp"],
-                          pass_fds=[writer], stderr=subprocess.DEVNULL) as display:
-        os.close(writer)
-        number = os.read(reader, 20).decode().strip()
-        os.close(reader)
+    # The lock file and socket of a display are the whole machine's, also for a network namespace: take an own number.
+    number = 100 + os.getpid() % 30000
+    socket = pathlib.Path(f"/tmp/.X11-unix/X{number}")
+    with subprocess.Popen(["Xvfb", f":{number}", "-screen", "0", "1280x900x24", "-nolisten", "tcp"],
+                          stderr=subprocess.DEVNULL) as display:
+        deadline = time.monotonic() + 30.0
+        while not socket.exists():
+            assert display.poll() is None and time.monotonic() < deadline
+            time.sleep(0.1)
         yield {**os.environ, "DISPLAY": f":{number}"}
-        display.kill()
+        display.terminate()
 
 
 def xdotool(screen, *arguments):

@@ -284,7 +284,8 @@ void World::build_islands(const StepContext& step) {
   };
   for (const std::uint32_t index : active_contacts_) {
     Contact& contact = contacts_.all()[index];
-    contact.flies = step.impact_events && flies(contact, step.h);
+    const bool may_strike = contact.manifold.count == 0 || contact.restitution > 0.0 || contact.fast;
+    contact.flies = step.impact_events && may_strike && flies(contact, step.h);
     if (contact.manifold.count == 0) continue;
     if (contact.flies) {
       contact.impulse.fill(Vec3::Zero());

@@ -101,14 +101,15 @@ void World::take_off(std::uint32_t slot) {
                         .torque = scratch_.load[slot].torque_W(),
                         .linear_damping = bodies_[slot].linear_damping,
                         .angular_damping = bodies_[slot].angular_damping};
-  if (body.state != FreeBody::State::none && step_count_ < body.last && body.flight.load() == load) return;
+  if (flight_state_[slot] != FlightState::none && step_count_ < body.last && body.flight.load() == load)
+    return;
   body.flight = Flight(masses_[slot], motions_[slot], load);
   body.takeoff = step_count_;
   const double steps = kLargestPhase / (body.flight.phase_rate() * options_.time_step);
   body.last = step_count_ + static_cast<std::uint64_t>(std::max(1.0, std::min(0x1p60, steps)));
   body.due = step_count_;
   body.reach = kNearest;
-  body.state = FreeBody::State::flying;
+  flight_state_[slot] = FlightState::flying;
 }
 
 /// Its boxes, if none of them meets anybody else's.
@@ -154,12 +155,12 @@ bool World::lift(std::uint32_t slot, std::uint64_t now) {
 bool World::try_lift(std::uint32_t slot) {
   FreeBody& body = free_[slot];
   const std::uint64_t now = step_count_ + 1;
-  if (body.state != FreeBody::State::flying || !body.flight.turns_freely() || !options_.skip_flying ||
+  if (flight_state_[slot] != FlightState::flying || !body.flight.turns_freely() || !options_.skip_flying ||
       now < body.due || paired_[slot] || pushed_[slot]) {
     return false;
   }
   if (!lift(slot, now)) return false;
-  body.state = FreeBody::State::aloft;
+  flight_state_[slot] = FlightState::aloft;
   ++aloft_count_;
   active_stale_ = true;
   return true;
@@ -179,9 +180,9 @@ void World::renew_flights() {
 
 void World::descend(std::uint32_t slot, std::uint64_t now) {
   FreeBody& body = free_[slot];
-  if (body.state != FreeBody::State::aloft) return;
+  if (flight_state_[slot] != FlightState::aloft) return;
   motions_[slot] = motion_in_flight(slot, now);
-  body.state = FreeBody::State::flying;
+  flight_state_[slot] = FlightState::flying;
   body.reach = kNearest;
   body.due = now + kNearest;
   --aloft_count_;
@@ -194,7 +195,7 @@ void World::descend(std::uint32_t slot, std::uint64_t now) {
 
 void World::land(std::uint32_t slot) {
   descend(slot, step_count_);
-  free_[slot].state = FreeBody::State::none;
+  flight_state_[slot] = FlightState::none;
 }
 
 }  // namespace tumble

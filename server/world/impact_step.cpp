@@ -119,7 +119,7 @@ void World::advance_impacts(const StepContext& step) {
   for (std::uint32_t slot = 0; slot < body_capacity(); ++slot) {
     if (!bodies_[slot].exists || !movable(slot) || events.trajectory(slot).stays()) continue;
     const Motion last_good = motions_[slot];
-    const bool undisturbed = free_[slot].state == FreeBody::State::flying && events.trajectory(slot).flies();
+    const bool undisturbed = flight_state_[slot] == FlightState::flying && events.trajectory(slot).flies();
     motions_[slot] =
         undisturbed ? motion_in_flight(slot, step_count_ + 1) : events.trajectory(slot).at(step.h);
     if (!is_finite(motions_[slot])) contain(slot, last_good);

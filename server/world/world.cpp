@@ -95,6 +95,7 @@ std::uint32_t World::take_slot() {
   bodies_.emplace_back();
   masses_.emplace_back();
   motions_.emplace_back();
+  flight_state_.push_back(FlightState::none);
   free_.emplace_back();
   awake_flag_.push_back(0);
   pushed_.push_back(0);
@@ -138,7 +139,7 @@ BodyId World::create_body(const BodyDefinition& definition) {
   motion.w = moves ? definition.w_WB : Vec3::Zero();
   motion.L = angular_momentum(mass, motion.q, motion.w);
   awake_flag_[slot] = moves;
-  free_[slot] = FreeBody{};
+  flight_state_[slot] = FlightState::none;
   pushed_[slot] = 0;
   paired_[slot] = 0;
   calm_for_[slot] = 0.0;

@@ -110,19 +110,18 @@ class World {
     Push push;
     double steps_left;  // whole ones and a last fraction
   };
+  enum class FlightState : std::uint8_t {
+    none,    ///< Something acts on it: motions_ is its state.
+    flying,  ///< Its flight is its state; motions_ holds the value of now.
+    aloft,   ///< Its flight is its state; nobody evaluates it.
+  };
   /// The flight of a body on which only constant forces act; see flight_step.cpp. Steps count from the world's start.
   struct FreeBody {
-    enum class State : std::uint8_t {
-      none,    ///< Something acts on it: motions_ is its state.
-      flying,  ///< The flight is its state; motions_ holds the value of now.
-      aloft,   ///< The flight is its state; nobody evaluates it.
-    };
     Flight flight;
     std::uint64_t takeoff = 0;  ///< Where the flight's time starts,
     std::uint64_t last = 0;     ///< and where it starts anew, before its phases lose digits.
     std::uint64_t due = 0;      ///< Aloft: its box holds until here. Flying: it tries to go aloft then.
     std::uint64_t reach = 0;    ///< Length of its last box [steps].
-    State state = State::none;
   };
   struct Due {
     std::uint64_t step;
@@ -239,7 +238,7 @@ class World {
   double pair_margin(Contact& contact, const StepContext& step) const;
 
   // flight_step.cpp: free bodies.
-  bool aloft(std::uint32_t slot) const { return free_[slot].state == FreeBody::State::aloft; }
+  bool aloft(std::uint32_t slot) const { return flight_state_[slot] == FlightState::aloft; }
   Motion motion_in_flight(std::uint32_t slot, std::uint64_t step) const;
   void advance_free(std::uint32_t slot, const StepContext& step);
   void follow_flight(std::uint32_t slot);
@@ -332,7 +331,8 @@ class World {
 
   // State, by slot: hot arrays.
   std::vector<Motion> motions_;  // out of date where aloft
-  std::vector<FreeBody> free_;
+  std::vector<FlightState> flight_state_;
+  std::vector<FreeBody> free_;  // where in flight
   std::vector<std::uint8_t> awake_flag_;
   std::vector<std::uint8_t> pushed_;      // has an active push: must not rest
   std::vector<std::uint8_t> paired_;      // some contact, open or closed, has it

@@ -37,9 +37,13 @@ void fill_world_stats(const World& world, const Conserved& start, stats_t& stats
   const Counters& counters = world.counters();
   stats.bodies_stepped = count(counters.bodies_stepped);
   stats.bodies_skipped_resting = count(counters.bodies_skipped_resting);
+  stats.bodies_skipped_flying = count(counters.bodies_skipped_flying);
   stats.islands_solved = count(counters.islands_solved);
   stats.islands_accepted = count(counters.islands_accepted);
   stats.islands_free = count(counters.islands_free);
+  stats.islands_smooth = count(counters.islands_smooth);
+  stats.solver_iterations = count(counters.solver_iterations);
+  stats.solver_fallbacks = count(counters.solver_fallbacks);
   stats.sweeps = count(counters.sweeps);
   stats.impacts = count(counters.impacts);
   stats.rests = count(counters.rests);

@@ -26,6 +26,8 @@ final class WorldView extends JPanel {
     private final String title;
     private double azimuth = -Math.PI / 2, elevation, pixelsPerMetre, centreX, centreY;
     private int lastX, lastY;
+    private int fitted; // bodies that the view was fitted to
+    private boolean chosen; // by the user, who keeps the view
 
     WorldView(Picture picture, Markers markers, String title, double elevation) {
         this.picture = picture;
@@ -40,6 +42,7 @@ final class WorldView extends JPanel {
             }
             @Override public void mouseDragged(MouseEvent event) { drag(event); }
             @Override public void mouseWheelMoved(MouseWheelEvent event) {
+                chosen = true;
                 pixelsPerMetre *= Math.pow(0.9, event.getPreciseWheelRotation());
                 repaint();
             }
@@ -50,6 +53,7 @@ final class WorldView extends JPanel {
     }
 
     private void drag(MouseEvent event) {
+        chosen = true;
         int dx = event.getX() - lastX, dy = event.getY() - lastY;
         lastX = event.getX();
         lastY = event.getY();
@@ -81,6 +85,7 @@ final class WorldView extends JPanel {
             }
         }
         if (low[0] > high[0]) return;
+        fitted = bodies.size();
         centreX = (low[0] + high[0]) / 2;
         centreY = (low[1] + high[1]) / 2;
         double margin = 2.0; // [m]
@@ -91,7 +96,7 @@ final class WorldView extends JPanel {
         super.paintComponent(graphics);
         Graphics2D g = (Graphics2D) graphics;
         List<Picture.Body> bodies = picture.placedBodies();
-        if (pixelsPerMetre == 0) fit(bodies);
+        if (!chosen && bodies.size() != fitted) fit(bodies); // they come in over the first second
         if (pixelsPerMetre == 0) return;
         g.setRenderingHint(RenderingHints.KEY_ANTIALIASING, RenderingHints.VALUE_ANTIALIAS_ON);
         drawGrid(g);

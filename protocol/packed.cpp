@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstddef>
 
+#include "protocol/columns.h"
+
 namespace tumble {
 namespace {
 
@@ -138,9 +140,7 @@ void unpack(const packed_t& message, state_t& state) {
   state.chunk = message.chunk;
   state.num_chunks = message.num_chunks;
   state.n = message.n;
-  std::vector<double>* const columns[] = {&state.px, &state.py, &state.pz, &state.qw, &state.qx,
-                                          &state.qy, &state.qz, &state.vx, &state.vy, &state.vz,
-                                          &state.wx, &state.wy, &state.wz};
+  const auto columns = motion_columns(state);
   for (std::int32_t row = 0; row < message.n; ++row) {
     const auto at = message.records.data() + static_cast<std::size_t>(row) * kPackedRecord;
     const PackedBody body =

@@ -11,6 +11,7 @@
 
 #include "from_message.h"
 #include "protocol/codec.h"
+#include "protocol/columns.h"
 #include "world/query.h"
 
 namespace tumble {
@@ -95,12 +96,8 @@ void push_hit(const Hit& hit, hits_t& message) {
   message.generation.push_back(static_cast<std::int32_t>(hit.body.generation));
   message.shape.push_back(hit.shape);
   message.distance.push_back(hit.distance);
-  message.px.push_back(hit.p_W.x());
-  message.py.push_back(hit.p_W.y());
-  message.pz.push_back(hit.p_W.z());
-  message.nx.push_back(hit.n_W.x());
-  message.ny.push_back(hit.n_W.y());
-  message.nz.push_back(hit.n_W.z());
+  push_components(hit.p_W, message.px, message.py, message.pz);
+  push_components(hit.n_W, message.nx, message.ny, message.nz);
   message.inside.push_back(hit.inside ? 1 : 0);
 }
 
@@ -128,8 +125,7 @@ hits_t answer_query(const World& world, const query_t& query, std::size_t payloa
   if (!all_finite(query)) return refuse_query(query, Status::not_finite, status_text(Status::not_finite));
   try {
     const std::vector<Hit> hits = find_hits(world, query);
-    const std::size_t room =
-        (payload_limit - static_cast<std::size_t>(answer.getEncodedSize())) / kBytesPerHit;
+    const std::size_t room = rows_that_fit(payload_limit, kBytesPerHit, answer);
     answer.num_hits = static_cast<std::int32_t>(hits.size());
     for (std::size_t i = 0; i < std::min(hits.size(), room); ++i) push_hit(hits[i], answer);
     return answer;

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "math/rotation.h"
+
 namespace tumble {
 namespace {
 
@@ -67,6 +69,16 @@ void set_tangents(PointContact& contact) {
   contact.t2 = n.cross(contact.t1);
 }
 
+Mat3 inverse_mass(const SolverBody& A, const SolverBody& B, const PointContact& c) {
+  const Mat3 RA = cross_matrix(c.rA), RB = cross_matrix(c.rB);
+  Mat3 frame;
+  frame << c.n, c.t1, c.t2;
+  const Mat3 K_W = (A.inv_mass + B.inv_mass) * Mat3::Identity() + RA * A.inv_I_W * RA.transpose() +
+                   RB * B.inv_I_W * RB.transpose();
+  const Mat3 K = frame.transpose() * K_W * frame;
+  return 0.5 * (K + K.transpose());
+}
+
 Vec3 relative_velocity(const SolverBody& A, const SolverBody& B, const Vec3& rA, const Vec3& rB) {
   return B.v + B.w.cross(rB) - A.v - A.w.cross(rA);
 }
@@ -100,8 +112,7 @@ void apply_stored_impulses(ContactProblem& problem) {
     apply_impulse(problem.bodies[row.a], problem.bodies[row.b], row.rA, row.rB, row.lambda * row.n);
   }
   for (const PointContact& c : problem.contacts) {
-    const Vec3 impulse = c.lambda.x() * c.n + c.lambda.y() * c.t1 + c.lambda.z() * c.t2;
-    apply_impulse(problem.bodies[c.a], problem.bodies[c.b], c.rA, c.rB, impulse);
+    apply_impulse(problem.bodies[c.a], problem.bodies[c.b], c.rA, c.rB, in_world(c, c.lambda));
   }
 }
 

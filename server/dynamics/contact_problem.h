@@ -82,6 +82,13 @@ struct ContactProblem {
 /// Fills t1, t2 (a fixed function of n).
 void set_tangents(PointContact& contact);
 
+/// (n, t1, t2) of the contact -> W.
+inline Vec3 in_world(const PointContact& c, const Vec3& p) {
+  return p.x() * c.n + p.y() * c.t1 + p.z() * c.t2;
+}
+/// Change of the relative velocity at the contact for a unit impulse at it, both in (n, t1, t2) [1/kg].
+Mat3 inverse_mass(const SolverBody& A, const SolverBody& B, const PointContact& c);
+
 /// Velocity of b's point at rB relative to a's at rA, at (v, w) and at (v0, w0) [m/s].
 Vec3 relative_velocity(const SolverBody& A, const SolverBody& B, const Vec3& rA, const Vec3& rB);
 Vec3 relative_start_velocity(const SolverBody& A, const SolverBody& B, const Vec3& rA, const Vec3& rB);

@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "dynamics/point_impact.h"
-#include "math/rotation.h"
 
 namespace tumble {
 namespace {
@@ -43,15 +42,6 @@ std::vector<Candidate> find_candidates(const ContactProblem& problem, double thr
   return candidates;
 }
 
-/// Inverse mass at the point, contact frame.
-Mat3 inverse_mass(const SolverBody& A, const SolverBody& B, const PointContact& c, const Mat3& frame) {
-  const Mat3 RA = cross_matrix(c.rA), RB = cross_matrix(c.rB);
-  const Mat3 K_W = (A.inv_mass + B.inv_mass) * Mat3::Identity() + RA * A.inv_I_W * RA.transpose() +
-                   RB * B.inv_I_W * RB.transpose();
-  const Mat3 K = frame.transpose() * K_W * frame;
-  return 0.5 * (K + K.transpose());
-}
-
 void apply_impact(SolverBody& body, const Vec3& r, const Vec3& impulse) {
   const Vec3 dv = body.inv_mass * impulse, dw = body.inv_I_W * r.cross(impulse);
   body.v0 += dv;
@@ -67,7 +57,7 @@ void bounce(ContactProblem& problem, const PointContact& c) {
   frame << c.n, c.t1, c.t2;
   Vec3 impulse;
   if (c.friction > 0.0) {
-    const Mat3 K = inverse_mass(A, B, c, frame);
+    const Mat3 K = inverse_mass(A, B, c);
     impulse = frame * solve_point_impact(K, frame.transpose() * u_W, c.friction, c.restitution);
   } else {
     const UnitImpulse unit = unit_impulse(A, B, c.n, c.rA, c.rB);

@@ -11,7 +11,6 @@
 #include "dynamics/interior_point.h"
 #include "dynamics/point_impact.h"
 #include "dynamics/solver.h"
-#include "math/rotation.h"
 
 namespace tumble {
 namespace {
@@ -28,25 +27,8 @@ Vec3 contact_velocity(const ContactProblem& problem, const PointContact& c) {
   return {u.dot(c.n), u.dot(c.t1), u.dot(c.t2)};
 }
 
-Vec3 in_world(const PointContact& c, const Vec3& p) {
-  return p.x() * c.n + p.y() * c.t1 + p.z() * c.t2;
-}
-
 void apply(ContactProblem& problem, const PointContact& c, const Vec3& p) {
   apply_impulse(problem.bodies[c.a], problem.bodies[c.b], c.rA, c.rB, in_world(c, p));
-}
-
-/// Inverse mass at the point, contact frame: the change of its velocity for a unit impulse at it.
-Mat3 inverse_mass(const ContactProblem& problem, const PointContact& c) {
-  const SolverBody &A = problem.bodies[c.a], &B = problem.bodies[c.b];
-  const Mat3 RA = cross_matrix(c.rA), RB = cross_matrix(c.rB);
-  Mat3 frame;
-  frame << c.n, c.t1, c.t2;
-  const Mat3 K = frame.transpose() *
-                 ((A.inv_mass + B.inv_mass) * Mat3::Identity() + RA * A.inv_I_W * RA.transpose() +
-                  RB * B.inv_I_W * RB.transpose()) *
-                 frame;
-  return 0.5 * (K + K.transpose());
 }
 
 /// One pass over the contacts that approach.
@@ -81,7 +63,11 @@ class Pass {
  private:
   Vec3 point_impact(const PointContact& c, const Vec3& u) const {
     if (frictionless_) return {-(1.0 + c.restitution) * u.x() * c.mass_n, 0.0, 0.0};
-    return solve_point_impact(inverse_mass(problem_, c), u, c.friction, c.restitution);
+    return solve_point_impact(inverse_mass_of(c), u, c.friction, c.restitution);
+  }
+
+  Mat3 inverse_mass_of(const PointContact& c) const {
+    return inverse_mass(problem_.bodies[c.a], problem_.bodies[c.b], c);
   }
 
   const PointContact& contact(std::size_t k) const { return problem_.contacts[violated_[k]]; }
@@ -230,7 +216,7 @@ class Pass {
   /// Friction of the expansion in discs of fixed size: a convex problem, one contact at a time.
   void rub(const std::vector<Vec3>& compression) {
     std::vector<Mat3> K;
-    for (std::size_t k = 0; k < violated_.size(); ++k) K.push_back(inverse_mass(problem_, contact(k)));
+    for (std::size_t k = 0; k < violated_.size(); ++k) K.push_back(inverse_mass_of(contact(k)));
     for (int sweep = 0; sweep < kFrictionSweeps; ++sweep) {
       double change = 0.0, size = 0.0;
       for (std::size_t k = 0; k < violated_.size(); ++k) {

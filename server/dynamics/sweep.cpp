@@ -78,8 +78,7 @@ void update_impulses(const Sweep& sweep, ContactProblem& problem) {
   for (PointContact& to : problem.contacts) {
     if (to.mass_n == 0.0) continue;
     const Vec3 l(contact->l_n, contact->l_1, contact->l_2), change = l - to.lambda;
-    apply_impulse(problem.bodies[to.a], problem.bodies[to.b], to.rA, to.rB,
-                  change.x() * to.n + change.y() * to.t1 + change.z() * to.t2);
+    apply_impulse(problem.bodies[to.a], problem.bodies[to.b], to.rA, to.rB, in_world(to, change));
     to.lambda = l;
     ++contact;
   }

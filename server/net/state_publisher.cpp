@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "protocol/codec.h"
+#include "protocol/columns.h"
 #include "tumble/body_state_t.hpp"
 #include "tumble/contacts_t.hpp"
 #include "tumble/pushes_t.hpp"
@@ -17,26 +18,14 @@ constexpr std::size_t kBytesPerContact = 2 * 4 + 10 * 8;
 /// An id and ten doubles.
 constexpr std::size_t kBytesPerPush = 4 + 10 * 8;
 
-/// Rows of `size` that fit a message beside what it holds when it has none.
-template <typename Message>
-std::size_t rows_per_message(std::size_t payload_limit, std::size_t size) {
-  return (payload_limit - static_cast<std::size_t>(Message{}.getEncodedSize())) / size;
-}
-
 void push_contact(const ContactView& contact, contacts_t& message) {
   ++message.n;
   message.body_a.push_back(static_cast<std::int32_t>(contact.body_a));
   message.body_b.push_back(static_cast<std::int32_t>(contact.body_b));
-  message.px.push_back(contact.p_W.x());
-  message.py.push_back(contact.p_W.y());
-  message.pz.push_back(contact.p_W.z());
-  message.nx.push_back(contact.n_W.x());
-  message.ny.push_back(contact.n_W.y());
-  message.nz.push_back(contact.n_W.z());
+  push_components(contact.p_W, message.px, message.py, message.pz);
+  push_components(contact.n_W, message.nx, message.ny, message.nz);
   message.separation.push_back(contact.separation);
-  message.jx.push_back(contact.impulse_W.x());
-  message.jy.push_back(contact.impulse_W.y());
-  message.jz.push_back(contact.impulse_W.z());
+  push_components(contact.impulse_W, message.jx, message.jy, message.jz);
 }
 
 }  // namespace
@@ -49,8 +38,8 @@ StatePublisher::StatePublisher(std::string world_name, std::size_t payload_limit
       contacts_channel_(channel_name(world_name_, kContactsSuffix)),
       pushes_channel_(channel_name(world_name_, kPushesSuffix)),
       encoding_(encoding),
-      contacts_per_message_(rows_per_message<contacts_t>(payload_limit, kBytesPerContact)),
-      pushes_per_message_(rows_per_message<pushes_t>(payload_limit, kBytesPerPush)),
+      contacts_per_message_(rows_that_fit<contacts_t>(payload_limit, kBytesPerContact)),
+      pushes_per_message_(rows_that_fit<pushes_t>(payload_limit, kBytesPerPush)),
       state_(payload_limit, encoding),
       catalog_(payload_limit) {}
 
@@ -116,15 +105,9 @@ void StatePublisher::encode_pushes(std::vector<std::uint8_t>& bytes) const {
   for (std::size_t i = 0; i < static_cast<std::size_t>(message.n); ++i) {
     const PushView& push = view_->pushes[i];
     message.body.push_back(static_cast<std::int32_t>(push.body));
-    message.px.push_back(push.p_W.x());
-    message.py.push_back(push.p_W.y());
-    message.pz.push_back(push.p_W.z());
-    message.fx.push_back(push.force_W.x());
-    message.fy.push_back(push.force_W.y());
-    message.fz.push_back(push.force_W.z());
-    message.tx.push_back(push.torque_W.x());
-    message.ty.push_back(push.torque_W.y());
-    message.tz.push_back(push.torque_W.z());
+    push_components(push.p_W, message.px, message.py, message.pz);
+    push_components(push.force_W, message.fx, message.fy, message.fz);
+    push_components(push.torque_W, message.tx, message.ty, message.tz);
     message.seconds_left.push_back(push.seconds_left);
   }
   encode(message, bytes);

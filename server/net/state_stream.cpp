@@ -6,6 +6,7 @@
 #include <bit>
 #include <limits>
 
+#include "protocol/columns.h"
 #include "protocol/packed.h"
 
 namespace tumble {
@@ -15,12 +16,6 @@ namespace {
 constexpr std::size_t kBytesPerBody = 4 + 4 + 1 + 13 * 8;
 /// Publications that repeat a body's last change: with 10 % loss one body in a thousand then waits for its refresh.
 constexpr std::uint8_t kRepeats = 2;
-
-/// The component arrays in the order of BodyView::values.
-std::array<std::vector<double>*, 13> components(state_t& message) {
-  return {&message.px, &message.py, &message.pz, &message.qw, &message.qx, &message.qy, &message.qz,
-          &message.vx, &message.vy, &message.vz, &message.wx, &message.wy, &message.wz};
-}
 
 /// The smallest cube of a power of two, but no smaller than kPackedEdge, around the bodies.
 void enclose(const WorldView& view, std::span<const std::uint32_t> slots, packed_t& message) {
@@ -40,19 +35,17 @@ void resize(state_t& message, std::size_t count) {
   message.id.resize(count);
   message.generation.resize(count);
   message.flags.resize(count);
-  for (std::vector<double>* component : components(message)) component->resize(count);
+  for (std::vector<double>* component : motion_columns(message)) component->resize(count);
 }
 
 }  // namespace
 
 StateStream::StateStream(std::size_t payload_limit, Encoding encoding) {
   if (encoding == Encoding::exact) {
-    bodies_per_message_ =
-        (payload_limit - static_cast<std::size_t>(state_t{}.getEncodedSize())) / kBytesPerBody;
+    bodies_per_message_ = rows_that_fit<state_t>(payload_limit, kBytesPerBody);
     ids_per_message_ = std::numeric_limits<std::uint32_t>::max();
   } else {
-    bodies_per_message_ =
-        (payload_limit - static_cast<std::size_t>(packed_t{}.getEncodedSize())) / kPackedRecord;
+    bodies_per_message_ = rows_that_fit<packed_t>(payload_limit, kPackedRecord);
     ids_per_message_ = kPackedIds;
   }
 }
@@ -124,7 +117,7 @@ bool StateStream::next(state_t& message) {
   std::span<const std::uint32_t> slots;
   if (!take_chunk(message, slots)) return false;
   resize(message, slots.size());
-  const auto arrays = components(message);
+  const auto arrays = motion_columns(message);
   for (std::size_t i = 0; i < slots.size(); ++i) {
     const BodyView& body = view_->bodies[slots[i]];
     message.id[i] = static_cast<std::int32_t>(slots[i]);

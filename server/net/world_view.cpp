@@ -77,9 +77,7 @@ void copy_contacts(const World& world, WorldView& view) {
   view.contacts.clear();
   for (const Contact& contact : world.contacts().all()) {
     if (contact.manifold.count == 0) continue;
-    const Geometry& geometry = world.geometries()[contact.pair.a];
-    const Motion& motion = world.motion(geometry.body);
-    const Pose X_WA = Pose{motion.q, motion.x} * geometry.X_BS;
+    const Pose X_WA = world.geometry_pose(world.geometries()[contact.pair.a]);
     for (int i = 0; i < contact.manifold.count; ++i) {
       const auto k = static_cast<std::size_t>(i);
       const ManifoldPoint& point = contact.manifold.points[k];

@@ -119,7 +119,7 @@ bool World::reach_ahead(std::uint32_t slot, std::uint64_t now, std::uint64_t unt
   const Aabb path = body.flight.path_bounds(static_cast<double>(now - body.takeoff) * h,
                                             static_cast<double>(until - body.takeoff) * h);
   const auto box = [&](const Geometry& geometry) {
-    return path.grown(geometry.X_BS.p.norm() + geometry.radius + geometry.contact_margin);
+    return path.grown(geometry.reach() + geometry.contact_margin);
   };
   for (const std::uint32_t index : bodies_[slot].geometries) {
     const Aabb bounds = box(geometries_[index]);

@@ -51,7 +51,7 @@ Approach compute_approach(const Contact& contact, const Pose& X_WA, const Motion
 bool gains_energy(const ContactProblem& problem, const std::vector<SolverBody>& before) {
   double work = 0.0, size = 0.0;
   for (const PointContact& c : problem.contacts) {
-    const Vec3 p = c.lambda.x() * c.n + c.lambda.y() * c.t1 + c.lambda.z() * c.t2;
+    const Vec3 p = in_world(c, c.lambda);
     const Vec3 u0 = relative_velocity(before[c.a], before[c.b], c.rA, c.rB);
     const Vec3 u1 = relative_velocity(problem.bodies[c.a], problem.bodies[c.b], c.rA, c.rB);
     work += 0.5 * p.dot(u0 + u1);

@@ -184,7 +184,7 @@ void World::store_impulses() {
   for (std::size_t i = 0; i < scratch_.problem.contacts.size(); ++i) {
     const PointContact& row = scratch_.problem.contacts[i];
     const Scratch::Source source = scratch_.contact_source[i];
-    const Vec3 impulse = row.lambda.x() * row.n + row.lambda.y() * row.t1 + row.lambda.z() * row.t2;
+    const Vec3 impulse = in_world(row, row.lambda);
     contacts_.all()[source.contact].impulse[source.point] =
         impulse.allFinite() ? impulse : Vec3(Vec3::Zero());
   }

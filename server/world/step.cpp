@@ -30,7 +30,7 @@ void drop_repeated_points(std::vector<Contact>& contacts, std::uint32_t index) {
 /// Of the geometry's furthest point about the centre of mass [m/s].
 double turning_speed(const Geometry& geometry, const Motion& motion) {
   // What does not turn may be infinite.
-  return motion.w.isZero(0.0) ? 0.0 : motion.w.norm() * (geometry.X_BS.p.norm() + geometry.radius);
+  return motion.w.isZero(0.0) ? 0.0 : motion.w.norm() * geometry.reach();
 }
 
 }  // namespace
@@ -100,18 +100,14 @@ void World::apply_pushes(const StepContext&) {
 }
 
 Pose World::geometry_pose(const Geometry& geometry) const {
-  if (aloft(geometry.body)) {
-    const Motion motion = this->motion(geometry.body);
-    return Pose{motion.q, motion.x} * geometry.X_BS;
-  }
-  const Motion& motion = motions_[geometry.body];
+  const Motion motion = this->motion(geometry.body);
   return Pose{motion.q, motion.x} * geometry.X_BS;
 }
 
 Aabb World::contact_bounds(const Geometry& geometry, double h) const {
   const Aabb bounds = compute_aabb(geometry.shape, geometry_pose(geometry));
   if (bodies_[geometry.body].type == BodyType::fixed) return bounds;
-  const double arm = geometry.X_BS.p.norm() + geometry.radius;
+  const double arm = geometry.reach();
   const double turn = std::min(motions_[geometry.body].w.norm() * h * arm, 2.0 * arm);
   return bounds.grown(geometry.contact_margin + turn);
 }

@@ -29,7 +29,9 @@ struct Geometry {
   Shape shape;
   Pose X_BS;
   Material material;
-  double radius = 0.0;          ///< Of a ball about S's origin that holds the shape [m].
+  double radius = 0.0;  ///< Of a ball about S's origin that holds the shape [m].
+  /// Of a ball about the centre of mass that holds it [m].
+  double reach() const { return X_BS.p.norm() + radius; }
   double fat_margin = 0.0;      ///< Slack of its broad-phase box [m].
   double contact_margin = 0.0;  ///< Gap at which its contacts start [m].
 };

@@ -10,8 +10,8 @@
 namespace tumble {
 
 struct Aabb {
-  Vec3 lower = Vec3::Constant(std::numeric_limits<double>::infinity());
-  Vec3 upper = Vec3::Constant(-std::numeric_limits<double>::infinity());
+  Vec3 lower = Vec3::Constant(kInfinity);
+  Vec3 upper = Vec3::Constant(-kInfinity);
 
   bool overlaps(const Aabb& other) const {
     return (lower.array() <= other.upper.array()).all() && (other.lower.array() <= upper.array()).all();
@@ -34,11 +34,11 @@ struct Aabb {
   /// When a box that is at `start` and moves with `velocity` first touches this one; infinity: never; 0: at once. With a
   /// box of no size and a unit velocity: where a ray enters. Rounded so that no contact of the insides is missed.
   double meets_at(const Aabb& start, const Vec3& velocity) const {
-    double enter = 0.0, leave = std::numeric_limits<double>::infinity();
+    double enter = 0.0, leave = kInfinity;
     for (int i = 0; i < 3; ++i) {
       const double ahead = lower[i] - start.upper[i], behind = upper[i] - start.lower[i];
       if (velocity[i] == 0.0) {
-        if (ahead > 0.0 || behind < 0.0) return std::numeric_limits<double>::infinity();
+        if (ahead > 0.0 || behind < 0.0) return kInfinity;
       } else {
         const double from = ahead / velocity[i], to = behind / velocity[i];
         enter = std::max(enter, std::min(from, to));
@@ -48,7 +48,7 @@ struct Aabb {
     // The products and differences above are off by two roundings each.
     constexpr double kSlack = 4.0 * std::numeric_limits<double>::epsilon();
     enter *= 1.0 - kSlack;
-    return enter <= leave * (1.0 + kSlack) ? enter : std::numeric_limits<double>::infinity();
+    return enter <= leave * (1.0 + kSlack) ? enter : kInfinity;
   }
   /// Half the surface area [m^2]: the cost measure of the tree. Extents are cut at 1e100 m: half-spaces have infinite
   /// boxes, and differences of infinite areas would be NaN. The boxes themselves, and so all answers, stay exact.

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 #include <utility>
 #include <vector>
 
@@ -62,9 +61,7 @@ class AabbTree {
       std::swap(enter_first, enter_second);
     }
     // An endless limit must not let in what is never met.
-    const auto met = [&](double enter) {
-      return enter <= limit && enter < std::numeric_limits<double>::infinity();
-    };
+    const auto met = [&](double enter) { return enter <= limit && enter < kInfinity; };
     if (met(enter_first)) cast_below(first, start, velocity, limit, visit);
     if (met(enter_second)) cast_below(second, start, velocity, limit, visit);
   }

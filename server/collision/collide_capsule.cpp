@@ -3,7 +3,6 @@
 #include "collision/collide_capsule.h"
 
 #include <array>
-#include <limits>
 
 #include "collision/feature_name.h"
 #include "collision/manifold_builder.h"

@@ -1,8 +1,6 @@
 // Distances of a sphere's centre; inside the other shape the nearest face (or any direction, from a line) is the way out.
 #include "collision/collide_sphere.h"
 
-#include <limits>
-
 #include "collision/manifold_builder.h"
 #include "collision/polytope.h"
 #include "collision/segment.h"

@@ -1,8 +1,6 @@
 // See convex_pieces.h. S is the shape's own frame; d its direction there.
 #include "collision/convex_pieces.h"
 
-#include <limits>
-
 namespace tumble {
 namespace {
 
@@ -45,7 +43,7 @@ struct PieceOf {
            (std::signbit(d.z()) ? 0u : 4u);
   }
   std::uint32_t operator()(const HullPointer& h) const {
-    return descend(view_of(*h), -d, 0, -std::numeric_limits<double>::infinity()).vertex;
+    return descend(view_of(*h), -d, 0, -kInfinity).vertex;
   }
 };
 

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 namespace tumble {
@@ -122,7 +121,7 @@ bool DifferenceHull::grow(const Corner& corner) {
 
 DifferenceHull::Face DifferenceHull::pierced_by(const Vec3& n) const {
   Face best;
-  double most = -std::numeric_limits<double>::infinity();
+  double most = -kInfinity;
   for (std::size_t f = 0; f < num_faces_; ++f) {
     const Face& face = faces_[f];
     if (!(face.normal.dot(n) > 0.5)) continue;
@@ -137,7 +136,7 @@ DifferenceHull::Face DifferenceHull::pierced_by(const Vec3& n) const {
     best = face;
     for (std::size_t i = 0; i < 3; ++i) best.weights[i] = w[i] / sum;
   }
-  if (!(most > -std::numeric_limits<double>::infinity())) best = faces_[0];
+  if (!(most > -kInfinity)) best = faces_[0];
   return best;
 }
 

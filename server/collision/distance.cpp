@@ -126,8 +126,8 @@ class DistanceSearch {
   double radii_, error_;  // [m]
 
   Simplex simplex_;
-  double lower_ = -std::numeric_limits<double>::infinity();  // of the cores [m]
-  double upper_ = std::numeric_limits<double>::infinity();
+  double lower_ = -kInfinity;  // of the cores [m]
+  double upper_ = kInfinity;
   Vec3 axis_A_ = Vec3::UnitZ();
   int iterations_ = 0;
 };

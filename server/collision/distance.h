@@ -4,7 +4,6 @@
 #pragma once
 
 #include <array>
-#include <limits>
 
 #include "collision/shape.h"
 
@@ -20,7 +19,7 @@ struct DistanceSettings {
   /// [m] upper - lower at which the search ends; rounding ends it anyway. Round flanks (cylinder, cone, ellipsoid) take
   /// about one step a digit, flat faces end by themselves.
   double tolerance = 0.0;
-  double beyond = std::numeric_limits<double>::infinity();  ///< [m] ends as soon as lower exceeds this.
+  double beyond = kInfinity;  ///< [m] ends as soon as lower exceeds this.
   Carriers start =
       {};           ///< Warm start: the carriers of this pair's last search; none: from the line of centres.
   int budget = 64;  ///< Support pairs at most; what is known then is returned.

@@ -3,7 +3,6 @@
 #include "collision/facet_search.h"
 
 #include <array>
-#include <limits>
 
 #include "collision/segment.h"
 

@@ -4,8 +4,6 @@
 
 #include <ccd/ccd.h>
 
-#include <limits>
-
 #include "math/rotation.h"
 
 namespace tumble {

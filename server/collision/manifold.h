@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <limits>
 
 #include "math/types.h"
 
@@ -39,7 +38,7 @@ struct Manifold {
 
 /// Smallest separation of the manifold's points [m]; infinite if it has none.
 inline double least_separation(const Manifold& manifold) {
-  double least = std::numeric_limits<double>::infinity();
+  double least = kInfinity;
   for (int i = 0; i < manifold.count; ++i)
     least = std::min(least, manifold.points[static_cast<std::size_t>(i)].separation);
   return least;

@@ -2,14 +2,13 @@
 // merged points stays does not depend on rounding.
 #include "collision/manifold_builder.h"
 
-#include <limits>
 #include <utility>
 
 namespace tumble {
 
 void ManifoldBuilder::reduce() {
   std::array<double, kCapacity> distance2;
-  distance2.fill(std::numeric_limits<double>::infinity());
+  distance2.fill(kInfinity);
   std::size_t next = 0;
   const std::size_t total = static_cast<std::size_t>(count_);
   for (std::size_t i = 1; i < total; ++i) {

@@ -3,7 +3,6 @@
 #include "collision/patch.h"
 
 #include <algorithm>
-#include <limits>
 
 #include "collision/feature_name.h"
 #include "collision/manifold_builder.h"
@@ -81,7 +80,7 @@ struct PatchOf {
       patch.width = face.width;
       return patch;
     }
-    const std::uint32_t vertex = descend(polytope, -d, 0, -std::numeric_limits<double>::infinity()).vertex;
+    const std::uint32_t vertex = descend(polytope, -d, 0, -kInfinity).vertex;
     double least = kAside;
     const ConvexHull::Edge* across = nullptr;
     for (const ConvexHull::Edge& edge : polytope.edges) {
@@ -132,7 +131,7 @@ struct PatchOf {
 struct FeatureMeeting {
   const PatchContact& contact;
   ManifoldBuilder& builder;
-  double lowest = std::numeric_limits<double>::infinity();
+  double lowest = kInfinity;
 
   void add(const Vec3& p_a, const Vec3& p_b, std::uint32_t name) {
     const Vec3& n = contact.normal_A;

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 #include <optional>
 
 #include "collision/shape.h"
@@ -11,8 +10,8 @@ namespace tumble {
 
 struct Ray {
   Vec3 origin;
-  Vec3 direction;                                           ///< Unit.
-  double length = std::numeric_limits<double>::infinity();  ///< [m]
+  Vec3 direction;             ///< Unit.
+  double length = kInfinity;  ///< [m]
   Vec3 at(double distance) const { return origin + distance * direction; }
 };
 

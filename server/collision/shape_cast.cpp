@@ -2,7 +2,6 @@
 #include "collision/shape_cast.h"
 
 #include <algorithm>
-#include <limits>
 
 #include "collision/distance.h"
 #include "collision/narrow_phase.h"

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 namespace tumble {
@@ -117,7 +116,7 @@ Simplex::Candidate Simplex::nearest_of_triangle(int i, int j, int k) const {
 
 Simplex::Candidate Simplex::nearest_of_tetrahedron() const {
   constexpr int kFaces[4][4] = {{0, 1, 2, 3}, {0, 3, 1, 2}, {1, 3, 2, 0}, {2, 3, 0, 1}};  // face, opposite
-  Candidate best{{}, Vec3::Zero(), std::numeric_limits<double>::infinity()};
+  Candidate best{{}, Vec3::Zero(), kInfinity};
   bool outside = false;
   for (const auto& [i, j, k, opposite] : kFaces) {
     const Vec3 n = area_vector(w(i), w(j), w(k));

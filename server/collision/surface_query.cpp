@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <memory>
 #include <vector>
 
@@ -81,7 +80,7 @@ Distance compute_distance(const Shape& a, const TriangleSurface& surface, const 
   SurfaceFacet facet;
   const auto nearest_within = [&](double reach) {
     Distance nearest;
-    nearest.upper = std::numeric_limits<double>::infinity();
+    nearest.upper = kInfinity;
     for (const std::uint32_t index : triangles_near(surface, bounds_B.grown(reach))) {
       const Distance distance =
           compute_distance(a, facet.of(surface.triangle(index)), X_AB, {.beyond = nearest.upper});

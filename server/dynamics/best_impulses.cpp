@@ -1,15 +1,10 @@
 // See best_impulses.h.
 #include "dynamics/best_impulses.h"
 
-#include <limits>
-
 namespace tumble {
 
 BestImpulses::BestImpulses(ContactProblem& problem)
-    : problem_(problem),
-      contact_(problem.contacts.size()),
-      row_(problem.rows.size()),
-      residual_(std::numeric_limits<double>::infinity()) {
+    : problem_(problem), contact_(problem.contacts.size()), row_(problem.rows.size()), residual_(kInfinity) {
   free_.reserve(2 * problem.bodies.size());
   for (const SolverBody& body : problem.bodies) {
     free_.push_back(body.v);
@@ -43,7 +38,7 @@ void BestImpulses::restore_start() {
 void BestImpulses::drop() {
   for (Vec3& lambda : contact_) lambda.setZero();
   for (double& lambda : row_) lambda = 0.0;
-  residual_ = std::numeric_limits<double>::infinity();
+  residual_ = kInfinity;
   restore_start();
 }
 

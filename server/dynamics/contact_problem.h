@@ -5,7 +5,6 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 #include <vector>
 
 #include "dynamics/body.h"
@@ -44,8 +43,8 @@ struct PointContact {
 struct ScalarRow {
   std::uint32_t a, b;
   Vec3 n, rA, rB;
-  double softness = std::numeric_limits<double>::infinity();  ///< [kg]
-  double bias = 0.0;                                          ///< [m/s]
+  double softness = kInfinity;  ///< [kg]
+  double bias = 0.0;            ///< [m/s]
   double stiffness =
       0.0;  ///< k [N/m], soft rows: with damping and extension it can be softened for a shorter step.
   double damping = 0.0;    ///< c [N s/m], soft rows.
@@ -57,7 +56,7 @@ struct ScalarRow {
   double lambda = 0.0;  ///< [N s]
   double mass = 0.0;    ///< 1/k [kg]; set by `prepare`.
 
-  bool is_soft() const { return softness < std::numeric_limits<double>::infinity(); }
+  bool is_soft() const { return softness < kInfinity; }
   bool is_two_sided() const { return lower < 0.0; }
 };
 

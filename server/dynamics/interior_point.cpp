@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "dynamics/block_cholesky.h"
 #include "dynamics/lorentz_cone.h"
@@ -312,7 +311,7 @@ void InteriorPoint::find_direction() {
 }
 
 double InteriorPoint::step_length() const {
-  double step = std::numeric_limits<double>::infinity();
+  double step = kInfinity;
   for (const ConeConstraint& cone : cones_)
     step = std::min({step, cone_step(cone.s, cone.ds), cone_step(cone.z, cone.dz)});
   return step;
@@ -365,7 +364,7 @@ void InteriorPoint::store() {
 
 int InteriorPoint::solve() {
   start();
-  double least = std::numeric_limits<double>::infinity();
+  double least = kInfinity;
   int iterations = 0, stalls = 0;
   while (iterations < kMaxIterations && stalls < kMaxStalls) {
     update_defects();
@@ -375,7 +374,7 @@ int InteriorPoint::solve() {
     advance(std::min(1.0, kToBoundary * step_length()));
     store();
     const double residual = best_.offer();
-    if (residual < tolerance_ || !(residual < std::numeric_limits<double>::infinity())) break;
+    if (residual < tolerance_ || !(residual < kInfinity)) break;
     stalls = residual < 0.8 * least ? 0 : stalls + 1;
     least = std::min(least, residual);
   }

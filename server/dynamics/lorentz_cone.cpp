@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace tumble {
 namespace {
@@ -35,7 +34,7 @@ double cone_step(const Vec3& x, const Vec3& d) {
   const double B = x.x() * d.x() - x.y() * d.y() - x.z() * d.z();
   const double C = cone_determinant(x);
   const double D = B * B - A * C;
-  double step = std::numeric_limits<double>::infinity();
+  double step = kInfinity;
   if (B < 0.0 && D >= 0.0) {
     step = C / (std::sqrt(D) - B);
   } else if (B >= 0.0 && A < 0.0) {

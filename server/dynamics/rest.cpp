@@ -3,7 +3,6 @@
 #include "dynamics/rest.h"
 
 #include <algorithm>
-#include <limits>
 
 namespace tumble {
 
@@ -11,7 +10,7 @@ double island_speed(const ContactProblem& problem) {
   double fastest = 0.0;
   for (const SolverBody& body : problem.bodies) {
     if (body.inv_mass == 0.0) continue;
-    if (!body.v.allFinite() || !body.w.allFinite()) return std::numeric_limits<double>::infinity();
+    if (!body.v.allFinite() || !body.w.allFinite()) return kInfinity;
     fastest = std::max({fastest, body.v.norm() + body.w.norm(), body.v0.norm() + body.w0.norm()});
   }
   return fastest;

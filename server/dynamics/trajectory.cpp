@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 namespace tumble {
 namespace {
@@ -12,7 +11,7 @@ namespace {
 /// Largest square of component k of w on the polhode: the other two components are traded for it by one of the two
 /// invariants sum I_i (I_i - I_j) w_i^2 = const, which leaves out axis j.
 double largest_square(const Vec3& I, const Vec3& w, int k) {
-  double largest = std::numeric_limits<double>::infinity();
+  double largest = kInfinity;
   for (const int j : {(k + 1) % 3, (k + 2) % 3}) {
     const int i = 3 - j - k;
     const double own = I[k] * (I[k] - I[j]), other = I[i] * (I[i] - I[j]);

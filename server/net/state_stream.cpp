@@ -2,7 +2,6 @@
 #include "net/state_stream.h"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <limits>
 

@@ -2,7 +2,6 @@
 #include "world/contact_graph.h"
 
 #include <algorithm>
-#include <limits>
 
 namespace tumble {
 

@@ -3,7 +3,6 @@
 // its bodies and all that rests against them are moved there, struck (reflection.h), and go on with new trajectories
 // through the rest of the step. World frame; times from the start of the step.
 #include <cmath>
-#include <limits>
 
 #include "dynamics/reflection.h"
 #include "dynamics/time_of_impact.h"
@@ -23,11 +22,11 @@ constexpr double kInstant = 1e-9;
 
 /// How a pair approaches at its points, and how fast it will meet.
 struct Approach {
-  double closing = 0.0;                                      // [m/s] fastest now
-  double opening = std::numeric_limits<double>::infinity();  // [m/s] slowest
-  double impact_speed = 0.0;                                 // [m/s] with which the gaps will close, at most
-  double gap = std::numeric_limits<double>::infinity();      // [m] least
-  double acceleration = 0.0;                                 // [m/s^2] towards each other, by forces
+  double closing = 0.0;        // [m/s] fastest now
+  double opening = kInfinity;  // [m/s] slowest
+  double impact_speed = 0.0;   // [m/s] with which the gaps will close, at most
+  double gap = kInfinity;      // [m] least
+  double acceleration = 0.0;   // [m/s^2] towards each other, by forces
 };
 
 Approach compute_approach(const Contact& contact, const Pose& X_WA, const Motion& A, const Motion& B,

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <functional>
-#include <limits>
 #include <optional>
 #include <vector>
 
@@ -27,7 +26,7 @@ struct QueryHit {
       false;  ///< The way starts inside; fraction is 0. Ray: normal is against it. Cast: the way out.
 };
 
-inline constexpr double kEndless = std::numeric_limits<double>::infinity();
+inline constexpr double kEndless = kInfinity;
 
 /// What the ray meets first; of equal distances the older geometry. direction: any length > 0. length [m] > 0, may be
 /// kEndless. A ray that starts inside a body meets it at once (filter the body out to look out of it). Throws

@@ -2,6 +2,7 @@
 #include "net/world_view.h"
 
 #include "tumble/state_t.hpp"
+#include "world/contact_forces.h"
 
 namespace tumble {
 namespace {
@@ -74,16 +75,11 @@ void copy_watched(const World& world, const std::vector<BodyId>& watched, WorldV
 }
 
 void copy_contacts(const World& world, WorldView& view) {
+  const double h = world.options().time_step;
   view.contacts.clear();
-  for (const Contact& contact : world.contacts().all()) {
-    if (contact.manifold.count == 0) continue;
-    const Pose X_WA = world.geometry_pose(world.geometries()[contact.pair.a]);
-    for (int i = 0; i < contact.manifold.count; ++i) {
-      const auto k = static_cast<std::size_t>(i);
-      const ManifoldPoint& point = contact.manifold.points[k];
-      view.contacts.push_back({contact.body_a, contact.body_b, X_WA * point.p_A,
-                               X_WA.q * contact.manifold.normal_A, contact.impulse[k], point.separation});
-    }
+  for (const ContactForce& contact : read_contact_forces(world)) {
+    view.contacts.push_back({contact.a.index, contact.b.index, contact.p_W, contact.normal_W,
+                             h * contact.force_W, contact.separation});
   }
 }
 

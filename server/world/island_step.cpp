@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "dynamics/balance.h"
 #include "dynamics/impact.h"
 #include "world/world.h"
 
@@ -210,6 +211,8 @@ bool World::try_rest(double residual) {
     rests = rests && (*slot == kWorld || !takes_part(*slot));
   }
   if (!rests || !options_.skip_resting) return false;
+  const double limit = options_.rest.residual;
+  if (residual < limit && balance_impulses(scratch_.problem, limit)) store_impulses();
   for (auto slot = begin; slot != movable_end; ++slot) {
     motions_[*slot].v.setZero();
     motions_[*slot].L.setZero();

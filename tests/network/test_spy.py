@@ -1,4 +1,4 @@
-"""lcm-spy with our types on a real (virtual) screen: a double-click on STATE opens the drawn world."""
+"""lcm-spy with our types on a real (virtual) screen: a double-click on STATE or PACKED opens the drawn world."""
 import os
 import pathlib
 import shutil
@@ -59,10 +59,16 @@ def colours(picture):
     return {colour: count / total for colour, count in counts.items()}
 
 
-def test_a_double_click_draws_the_world(start, wire, screen, tmp_path):
-    start("--demo", "pyramid")
+@pytest.fixture(name="jar_folder", scope="module")
+def make_jar_folder(tmp_path_factory):
+    return tmp_path_factory.mktemp("spy")
+
+
+@pytest.mark.parametrize("encoding", ["exact", "packed"])
+def test_a_double_click_draws_the_world(start, wire, screen, tmp_path, jar_folder, encoding):
+    start("--demo", "pyramid", "--encoding", encoding)
     wire.next("HEARTBEAT", 10.0)
-    environment = {**screen, "TUMBLE_SPY_BUILD": str(tmp_path / "spy")}
+    environment = {**screen, "TUMBLE_SPY_BUILD": str(jar_folder)}
     said = tmp_path / "spy.log"
     with open(said, "wb") as output, subprocess.Popen([ROOT / "clients/spy/tumble-spy"], env=environment, stdout=output,
                                                       stderr=subprocess.STDOUT) as spy:

@@ -1,4 +1,4 @@
-// What the view draws: bodies merged from <WORLD>_STATE and <WORLD>_CATALOG. Only the newest news of a body counts;
+// What the view draws: bodies merged from <WORLD>_STATE or <WORLD>_PACKED, and <WORLD>_CATALOG. Only the newest news of a body counts;
 // a body is gone when a catalogue of a newer epoch no longer lists it; a new session starts from nothing.
 package tumble.spy;
 
@@ -7,6 +7,7 @@ import java.util.HashMap;
 import java.util.List;
 import java.util.Map;
 import tumble.catalog_t;
+import tumble.packed_t;
 import tumble.state_t;
 
 final class Picture {
@@ -20,7 +21,8 @@ final class Picture {
         int generation;
         long epoch, step = -1;
         String name = "";
-        byte flags;
+        byte flags, typeFlag;
+        boolean described;
         double[] position, orientation;
         final Map<Integer, Shape> shapes = new HashMap<>();
     }
@@ -41,7 +43,24 @@ final class Picture {
 
     synchronized void merge(state_t m) {
         adoptSession(m.session);
-        boolean mayCreate = m.catalog_epoch >= epoch;
+        place(m, m.catalog_epoch >= epoch);
+    }
+
+    /** Whoever the catalogue has not told of yet comes with a refresh. */
+    synchronized void merge(packed_t m) {
+        adoptSession(m.session);
+        state_t state = PackedRecords.unpack(m);
+        for (int i = 0; i < m.n; ++i) {
+            Body body = bodies.get(state.id[i]);
+            boolean known = body != null && body.described
+                && body.generation % PackedRecords.GENERATIONS == state.generation[i];
+            state.generation[i] = known ? body.generation : -1;
+            if (known) state.flags[i] |= body.typeFlag;
+        }
+        place(state, false);
+    }
+
+    private void place(state_t m, boolean mayCreate) {
         epoch = Math.max(epoch, m.catalog_epoch);
         if (m.step >= step) {
             step = m.step;
@@ -71,6 +90,9 @@ final class Picture {
             if (body == null) continue;
             body.name = m.name[i];
             body.epoch = m.epoch;
+            body.described = true;
+            body.typeFlag = m.type[i] == catalog_t.TYPE_STATIC ? state_t.FLAG_STATIC
+                : m.type[i] == catalog_t.TYPE_KINEMATIC ? state_t.FLAG_KINEMATIC : 0;
         }
         for (int i = 0; i < m.num_shapes; ++i) mergeShape(m, i);
     }

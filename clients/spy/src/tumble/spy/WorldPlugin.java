@@ -1,4 +1,4 @@
-// The view of the world in lcm-spy: double-click <WORLD>_STATE, or choose it from the channel's menu. lcm-spy finds
+// The view of the world in lcm-spy: double-click <WORLD>_STATE or <WORLD>_PACKED, or choose it from the channel's menu. lcm-spy finds
 // this class by its interface. Contacts and pushes are asked for while a window is open.
 package tumble.spy;
 
@@ -20,6 +20,7 @@ import lcm.spy.SpyPlugin;
 import tumble.catalog_t;
 import tumble.contacts_t;
 import tumble.control_t;
+import tumble.packed_t;
 import tumble.pushes_t;
 import tumble.state_t;
 
@@ -38,18 +39,20 @@ public final class WorldPlugin implements SpyPlugin {
 
     private WorldPlugin(String world) { this.world = world; }
 
-    @Override public boolean canHandle(long fingerprint) { return fingerprint == state_t.LCM_FINGERPRINT; }
+    @Override public boolean canHandle(long fingerprint) {
+        return fingerprint == state_t.LCM_FINGERPRINT || fingerprint == packed_t.LCM_FINGERPRINT;
+    }
 
     @Override public Action getAction(JDesktopPane desktop, ChannelData channel) {
         return new AbstractAction("Draw the world") {
             @Override public void actionPerformed(ActionEvent event) {
-                new WorldPlugin(channel.name.replaceFirst("_STATE$", "")).open();
+                new WorldPlugin(channel.name.replaceFirst("_(STATE|PACKED)$", "")).open();
             }
         };
     }
 
     private void open() {
-        String channels = world + "_(STATE|CATALOG|CONTACTS|PUSHES)";
+        String channels = world + "_(STATE|PACKED|CATALOG|CONTACTS|PUSHES)";
         LCMSubscriber subscriber = (lcm, channel, input) -> receive(channel, input);
         LCM.getSingleton().subscribe(channels, subscriber);
         WorldView above = new WorldView(picture, markers, "from above", Math.PI / 2);
@@ -93,6 +96,8 @@ public final class WorldPlugin implements SpyPlugin {
         try {
             if (channel.endsWith("_STATE")) {
                 picture.merge(new state_t(input));
+            } else if (channel.endsWith("_PACKED")) {
+                picture.merge(new packed_t(input));
             } else if (channel.endsWith("_CATALOG")) {
                 picture.merge(new catalog_t(input));
             } else if (channel.endsWith("_CONTACTS")) {

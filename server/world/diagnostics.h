@@ -39,6 +39,8 @@ struct StepReport {
   std::uint32_t pairs = 0, contacts = 0, islands = 0;
   double deepest_penetration = 0.0;  ///< [m], >= 0
   double max_residual = 0.0;         ///< [m/s]
+  /// [J] by which overlaps were pushed apart. With inelastic contacts kinetic and potential energy rise by no more.
+  double push_work = 0.0;
 };
 
 /// Sums over all movable bodies, about W's origin.

@@ -57,6 +57,7 @@ void World::solve_problem(const StepContext& step) {
   ++(solved.accepted ? counters_.islands_accepted : counters_.islands_solved);
   step_residual_ = std::max(step_residual_, solved.residual);
   scratch_.residual = solved.residual;
+  for (const PointContact& c : problem.contacts) step_push_work_ += c.lambda.x() * std::max(0.0, c.bound);
   store_impulses();
 }
 
@@ -227,21 +228,77 @@ bool World::try_rest(double residual) {
 }
 
 void World::move_bodies(const StepContext& step) {
-  const ContactProblem& problem = scratch_.problem;
+  const bool mean = scratch_.problem.drift == ContactProblem::Drift::average;
+  const double share = mean ? gainless_share(step) : 0.0;
   for (std::uint32_t i = 0; i < scratch_.problem_movable; ++i) {
-    const SolverBody& solved = problem.bodies[i];
-    const std::uint32_t slot = scratch_.problem_slot[i];
-    const Motion& motion = motions_[slot];
-    // Momentum after the forces plus what the impulses changed, so that a body no impulse met keeps its bits.
-    const Scratch::AfterForces& after = scratch_.after_forces[i];
-    const Vec3 L1 = after.L + after.I_W * (solved.w - solved.inv_I_W * after.L);
-    VelocityPath path{.v0 = solved.v, .v1 = solved.v, .L0 = L1, .L1 = L1};
-    if (problem.drift == ContactProblem::Drift::average) {
-      path.v0 = solved.v0;
-      path.L0 = motion.L + after.I_W * (solved.w0 - motion.w);
-    }
-    move_body(slot, path, solved.shift, solved.turn, step);
+    const SolverBody& solved = scratch_.problem.bodies[i];
+    move_body(scratch_.problem_slot[i], velocity_path(i, share), solved.shift, solved.turn, step);
   }
+}
+
+VelocityPath World::velocity_path(std::uint32_t i, double share) const {
+  const SolverBody& solved = scratch_.problem.bodies[i];
+  // Momentum after the forces plus what the impulses changed, so that a body no impulse met keeps its bits.
+  const Scratch::AfterForces& after = scratch_.after_forces[i];
+  const Vec3 L1 = after.L + after.I_W * (solved.w - solved.inv_I_W * after.L);
+  VelocityPath path{.v0 = solved.v, .v1 = solved.v, .L0 = L1, .L1 = L1};
+  if (share == 0.0) return path;
+  const Motion& motion = motions_[scratch_.problem_slot[i]];
+  path.v0 = solved.v0;
+  path.L0 = motion.L + after.I_W * (solved.w0 - motion.w);
+  if (share < 1.0) {
+    path.v0 = path.v1 + share * (path.v0 - path.v1);
+    path.L0 = path.L1 + share * (path.L0 - path.L1);
+  }
+  return path;
+}
+
+/// The mean velocity, (v0 + v)/2, moves a body further against gravity than the end velocity that the contacts allow, and
+/// turns it while its momentum changes: both can lift the energy by terms of h^2. The bodies drift with as much of
+/// (v0 - v)/2 as gains nothing but the work by which overlaps are pushed apart; without it the impulses take energy away,
+///   dE(share) = sum lambda.(u0 + u)/2 + what turning adds to L.w/2 - (1 - share) sum h F.(v - v0)/2 .
+double World::gainless_share(const StepContext& step) const {
+  constexpr double kSlack = 1e-8;    // [m] by which a load may be lifted, as in choose_drift
+  constexpr double kInside = 0.999;  // of the limit, so that the next trial is not decided by rounding
+  constexpr int kTrials = 4;
+  const ContactProblem& problem = scratch_.problem;
+  if (problem.contacts.empty()) return 1.0;
+  double work = 0.0, allowed = 0.0, given_up = 0.0;
+  for (const PointContact& c : problem.contacts) {
+    const SolverBody &A = problem.bodies[c.a], &B = problem.bodies[c.b];
+    const Vec3 u = relative_start_velocity(A, B, c.rA, c.rB) + relative_velocity(A, B, c.rA, c.rB);
+    work += 0.5 * in_world(c, c.lambda).dot(u);
+    allowed += c.lambda.x() * (kSlack / step.h + std::max(0.0, c.bound));
+  }
+  for (std::uint32_t i = 0; i < scratch_.problem_movable; ++i) {
+    const std::uint32_t slot = scratch_.problem_slot[i];
+    const SolverBody& solved = problem.bodies[i];
+    given_up += 0.5 * step.h * masses_[slot].mass * acceleration_of(slot).dot(solved.v - solved.v0);
+  }
+  const double least = work - given_up;
+  double share = 1.0;
+  for (int trial = 0; trial < kTrials; ++trial) {
+    const double gain = work + turning_gain(share, step) - (1.0 - share) * given_up;
+    if (gain <= allowed) return share;
+    if (least >= kInside * allowed) break;
+    share *= (kInside * allowed - least) / (gain - least);
+  }
+  return 0.0;
+}
+
+/// What the drift adds to L.w/2 of all bodies while L goes from its start to its end [J].
+double World::turning_gain(double share, const StepContext& step) const {
+  double gain = 0.0;
+  for (std::uint32_t i = 0; i < scratch_.problem_movable; ++i) {
+    const std::uint32_t slot = scratch_.problem_slot[i];
+    const MassProperties& mass = masses_[slot];
+    if (mass.I.x() == mass.I.y() && mass.I.y() == mass.I.z()) continue;
+    const VelocityPath path = velocity_path(i, share);
+    Motion moved = motions_[slot];
+    step.integrate_in_contact(mass, path, step.h, moved);
+    gain += 0.5 * path.L1.dot(moved.w - scratch_.problem.bodies[i].inv_I_W * path.L1);
+  }
+  return gain;
 }
 
 void World::move_body(std::uint32_t slot, const VelocityPath& path, const Vec3& shift, const Vec3& turn,

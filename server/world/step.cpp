@@ -305,6 +305,7 @@ void World::build_islands(const StepContext& step) {
 void World::advance_islands(const StepContext& whole_step) {
   contained_.clear();
   step_residual_ = 0.0;
+  step_push_work_ = 0.0;
   StepContext step = whole_step;
   step.ways_only = !scratch_.flying.empty();
   if (step.ways_only) begin_impacts(step);
@@ -332,6 +333,7 @@ void World::update_report() {
   report_.contacts = resting_points_;
   report_.deepest_penetration = resting_penetration_;
   report_.max_residual = step_residual_;
+  report_.push_work = step_push_work_;
   for (const std::uint32_t index : active_contacts_) {
     const Manifold& manifold = contacts_.all()[index].manifold;
     report_.contacts += static_cast<std::uint32_t>(manifold.count);

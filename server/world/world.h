@@ -282,6 +282,10 @@ class World {
   void store_impulses();
   bool try_rest(double residual);
   void move_bodies(const StepContext& step);
+  VelocityPath velocity_path(std::uint32_t problem_body, double share) const;
+  /// Share of the mean velocity with which the bodies of the problem may drift, 0..1.
+  double gainless_share(const StepContext& step) const;
+  double turning_gain(double share, const StepContext& step) const;
   /// Of forces that are the same at every orientation, and of gravity.
   Vec3 acceleration_of(std::uint32_t slot) const;
   /// Moves the body along the path, or notes that it will be.
@@ -357,7 +361,8 @@ class World {
   std::vector<std::uint32_t> active_contacts_;  // with an awake or moving body
   std::uint32_t resting_points_ = 0;
   double resting_penetration_ = 0.0;
-  double step_residual_ = 0.0;  // [m/s] largest of the step's islands
+  double step_residual_ = 0.0;   // [m/s] largest of the step's islands
+  double step_push_work_ = 0.0;  // [J] of all of them
 
   Counters counters_;
   StepReport report_;

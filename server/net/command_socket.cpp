@@ -10,10 +10,7 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
-#include <optional>
 #include <system_error>
-
-#include "protocol/bus_probe.h"
 
 namespace tumble {
 namespace {
@@ -66,16 +63,6 @@ std::vector<sock_filter> make_filter(const std::string& ignored) {
   return program;
 }
 
-/// Channel and payload, or as much as was kept of it, of a short message or a first fragment.
-std::optional<ShortMessage> parse_message(std::string_view bytes) {
-  if (!bytes.starts_with("LC03")) return parse_short_message(bytes);
-  if (bytes.size() < kFragmentHeader) return std::nullopt;
-  bytes.remove_prefix(kFragmentHeader);
-  const auto end = bytes.find('\0');
-  if (end == std::string_view::npos) return std::nullopt;
-  return ShortMessage{bytes.substr(0, end), bytes.substr(end + 1)};
-}
-
 void join(int socket, const BusAddress& address) {
   const int yes = 1;
   set_option(socket, SOL_SOCKET, SO_REUSEADDR, yes);
@@ -112,6 +99,15 @@ std::optional<std::uint32_t> read_dropped(msghdr& header) {
 }
 
 }  // namespace
+
+std::optional<ShortMessage> parse_datagram(std::string_view bytes) {
+  if (!bytes.starts_with("LC03")) return parse_short_message(bytes);
+  if (bytes.size() < kFragmentHeader) return std::nullopt;
+  bytes.remove_prefix(kFragmentHeader);
+  const auto end = bytes.find('\0');
+  if (end == std::string_view::npos) return std::nullopt;
+  return ShortMessage{bytes.substr(0, end), bytes.substr(end + 1)};
+}
 
 CommandSocket::CommandSocket(const BusAddress& address, const std::string& ignored_channel)
     : socket_(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0)), buffers_(kBatch * kSlot) {
@@ -162,7 +158,7 @@ int CommandSocket::receive(int budget, const Handler& handler) {
       dropped_ = read_dropped(headers[i].msg_hdr).value_or(dropped_);
       sender_ = senders[i];
       const std::string_view bytes(reinterpret_cast<const char*>(slices[i].iov_base), headers[i].msg_len);
-      if (const auto message = parse_message(bytes)) {
+      if (const auto message = parse_datagram(bytes)) {
         handler(message->channel,
                 {reinterpret_cast<const std::uint8_t*>(message->payload.data()), message->payload.size()});
       }

@@ -8,14 +8,19 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "protocol/bus_address.h"
+#include "protocol/bus_probe.h"
 #include "protocol/codec.h"
 
 namespace tumble {
+
+/// Channel and payload, or as much as was kept of it, of a short message or a first fragment; views into `bytes`.
+std::optional<ShortMessage> parse_datagram(std::string_view bytes);
 
 class CommandSocket {
  public:

@@ -7,11 +7,11 @@
 #include <fstream>
 #include <map>
 #include <random>
-#include <set>
 #include <string>
 #include <vector>
 
 #include "contact_claims.h"
+#include "kept_inputs.h"
 
 namespace {
 
@@ -42,18 +42,6 @@ void replay(const Bytes& bytes, const std::string& name, const std::string& fold
       .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
 }
 
-Bytes read_file(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
-std::set<std::filesystem::path> files_below(const std::filesystem::path& path) {
-  if (!std::filesystem::is_directory(path)) return {path};
-  std::set<std::filesystem::path> files;
-  for (const auto& entry : std::filesystem::directory_iterator(path)) files.insert(entry.path());
-  return files;
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -70,7 +58,7 @@ int main(int argc, char** argv) {
   Tally tally;
   for (std::size_t i = 1; i < arguments.size(); ++i) {
     for (const auto& path : files_below(arguments[i]))
-      replay(read_file(path), path.filename().string(), "", tally);
+      replay(read_input(path), path.filename().string(), "", tally);
   }
   const int kept = tally.inputs, random = std::stoi(arguments[0]);
   std::mt19937 engine(1);

@@ -1,0 +1,15 @@
+// Inputs that were kept in files: findings, and what covers much.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <set>
+#include <vector>
+
+namespace tumble::test {
+
+std::vector<std::uint8_t> read_input(const std::filesystem::path& path);
+/// The file itself, or all in the folder.
+std::set<std::filesystem::path> files_below(const std::filesystem::path& path);
+
+}  // namespace tumble::test

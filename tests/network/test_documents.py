@@ -1,15 +1,18 @@
-"""Every command and every script that the documents of the clients show does what they say: exit status 0."""
+"""Every command and every script that the documents for users show does what they say: exit status 0."""
 import pathlib
 import re
+import signal
 import subprocess
 import sys
+import time
 
 import pytest
 from server import CLI, ROOT, SCENES, SERVER, Server
 
-PAGES = ["clients/README.md", "clients/troubleshooting.md"]
+PAGES = ["README.md", "clients/README.md", "clients/troubleshooting.md"]
 PROGRAMS = {"./run tumble ": [CLI], "./run tumble-server ": [SERVER], "./run python ": [sys.executable]}
-NOT_RUN = {"./run spy": "needs a display; test_spy.py runs it"}
+NOT_RUN = {"./run": "the server of test_commands", "./run spy": "needs a display; test_spy.py runs it"}
+RECORDING = ("--record", "--replay", "--resume")
 CXX = ["g++", "-std=c++20", "-fsyntax-only", "-x", "c++", "-"]
 
 
@@ -19,12 +22,15 @@ def blocks(page, language):
             if match.group(1) == language]
 
 
-def shell_lines():
-    for page in PAGES:
-        for block in blocks(page, ""):
-            for line in block.splitlines():
-                if line.startswith("./run"):
-                    yield page, re.sub(r"\s+#.*", "", line)
+def shell_lines(page):
+    for block in blocks(page, ""):
+        for line in block.splitlines():
+            if line.startswith("./run"):
+                yield re.sub(r"\s+#.*", "", line)
+
+
+def is_recording(line):
+    return any(option in line for option in RECORDING)
 
 
 def command_of(line):
@@ -35,19 +41,36 @@ def command_of(line):
     return None
 
 
-def test_commands(tmp_path):
+@pytest.mark.parametrize("page", PAGES)
+def test_commands(page, tmp_path):
     """In the order of the page, on one server, as a reader would type them."""
     with Server(tmp_path / "server.log", "--demo", "pyramid") as server:
         server.wait_for_output("TUMBLE_STATE", 20.0)
         run = 0
-        for page, line in shell_lines():
-            command = command_of(line)
-            if command is None or line.endswith("watch.py"):  # the latter runs until Ctrl-C: test_examples.py
+        for line in shell_lines(page):
+            # A client that runs until Ctrl-C is for test_examples.py, servers are for test_recordings.
+            if is_recording(line) or line.endswith("watch.py") or (command := command_of(line)) is None:
                 continue
             done = subprocess.run(command, cwd=ROOT, check=False, timeout=60, capture_output=True, text=True)
             assert done.returncode == 0, f"{page}: {line}\n{done.stdout}{done.stderr}"
             run += 1
-        assert run > 15
+        assert run > 0
+
+
+def test_recordings(tmp_path):
+    """A server that is told to record or to go on does so until Ctrl-C; a replay ends by itself."""
+    lines = [line for line in shell_lines("README.md") if is_recording(line)]
+    assert [option for line in lines for option in RECORDING if option in line] == list(RECORDING)
+    for line in lines:
+        with subprocess.Popen(command_of(line), cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                              text=True) as server:
+            if "--replay" not in line:
+                time.sleep(3.0)
+                server.send_signal(signal.SIGINT)
+            output = server.communicate(timeout=60)[0]
+            assert server.returncode == 0, f"{line}\n{output}"
+            if "--replay" in line:
+                assert "came out the same" in output
 
 
 def scripts():

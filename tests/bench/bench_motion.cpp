@@ -6,7 +6,8 @@
 
 #include "dynamics/flight.h"
 #include "dynamics/integrator.h"
-#include "free_body_peers.h"
+#include "peers/free_bodies.h"
+#include "peers/peer.h"
 #include "support/rotation_cases.h"
 #include "world/world.h"
 
@@ -71,28 +72,11 @@ void per_body(benchmark::State& state, int bodies) {
       1e-9 * bodies, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 
-World free_bodies(int count, Integrator integrator = Integrator::closed_form) {
-  Options options;
-  options.integrator = integrator;
-  World world(options);
-  for (int i = 0; i < count; ++i) {
-    BodyDefinition body;
-    body.name = "body" + std::to_string(i);
-    body.X_WL.p = Vec3(10.0 * (i % 100), 10.0 * (i / 100), 0.0);
-    body.v_WB = Vec3(0, 0, 20);
-    body.w_WB = kKinds[2].w;
-    body.inertia = Inertia{1.0, Vec3::Zero(), kKinds[2].I.asDiagonal()};
-    GeometryDefinition geometry;
-    geometry.shape = Sphere{0.1};
-    body.geometries = {geometry};
-    world.create_body(body);
-  }
-  return world;
-}
-
 /// Once every body is aloft for long.
 void step_world(benchmark::State& state, int count, bool read, Integrator integrator) {
-  World world = free_bodies(count, integrator);
+  Scene scene = bench::free_bodies(count, kKinds[2].I, kKinds[2].w, Vec3(0, 0, 20), Vec3(0, 0, -9.81));
+  scene.options.integrator = integrator;
+  World world = build_world(scene);
   for (int i = 0; i < 600; ++i) world.step();
   double sum = 0.0;
   for (auto run : state) {
@@ -103,10 +87,10 @@ void step_world(benchmark::State& state, int count, bool read, Integrator integr
   if (count > 0) per_body(state, count);
 }
 
-void step_peer(benchmark::State& state, bool bullet) {
-  const auto make = bullet ? bench::make_bullet : bench::make_ode;
-  const auto peer = make(kBodies, kKinds[2].I, kKinds[2].w, Vec3::Zero(), Vec3::Zero());
-  for (auto run : state) peer->step(kStep);
+void step_peer(benchmark::State& state, const bench::Method& method) {
+  const Scene scene = bench::free_bodies(kBodies, kKinds[2].I, kKinds[2].w, Vec3::Zero(), Vec3::Zero());
+  const auto peer = method.make(scene, kStep);
+  for (auto run : state) peer->step();
   per_body(state, kBodies);
 }
 
@@ -128,8 +112,8 @@ void add_measurements() {
   add("world/256_read", [](benchmark::State& s) { step_world(s, kBodies, true, Integrator::closed_form); });
   add("world/256_semi_implicit_euler",
       [](benchmark::State& s) { step_world(s, kBodies, true, Integrator::semi_implicit_euler); });
-  add("world/256_bullet", [](benchmark::State& s) { step_peer(s, true); });
-  add("world/256_ode", [](benchmark::State& s) { step_peer(s, false); });
+  add("world/256_bullet", [](benchmark::State& s) { step_peer(s, bench::bullet_methods().front()); });
+  add("world/256_ode", [](benchmark::State& s) { step_peer(s, bench::ode_methods().front()); });
   add("world/empty", [](benchmark::State& s) { step_world(s, 0, false, Integrator::closed_form); });
   add("world/10000_unread",
       [](benchmark::State& s) { step_world(s, 10000, false, Integrator::closed_form); });

@@ -1,6 +1,6 @@
 // motion_accuracy SHARE CSV: prints, as Markdown, the errors of flights for 2000 SHARE cases (at least 100) of each class of
-// bodies; writes to CSV the error and CPU time of 10 simulated seconds for each case, method and time step, Bullet and
-// ODE among the methods.
+// bodies; writes to CSV the error and CPU time of 10 simulated seconds for each case, method and time step, Bullet,
+// ODE and MuJoCo's Runge-Kutta integrator among the methods.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -12,7 +12,8 @@
 
 #include "dynamics/flight.h"
 #include "dynamics/integrator.h"
-#include "free_body_peers.h"
+#include "peers/free_bodies.h"
+#include "peers/peer.h"
 #include "support/rotation_cases.h"
 #include "support/rotation_classes.h"
 #include "support/rotation_reference.h"
@@ -64,32 +65,38 @@ Case complex_box() {
   return {"gazebo_complex", I, w, Vec3(-2, 2, 8), Vec3(0, 0, -9.8), true_rotation<__float128>(I, w, 10.0).q};
 }
 
-using Simulate = std::function<Motion(const Case&, int steps, double h)>;
+using Run = std::function<Motion()>;  ///< To the end; what is timed.
+using Simulate = std::function<Run(const Case&, int steps, double h)>;
 
 Simulate stepper(IntegrateFunction integrate) {
   return [integrate](const Case& c, int steps, double h) {
-    const MassProperties mass = principal_body(c.I);
-    Motion body = start_of(c.I, c.w, c.v);
-    for (int i = 0; i < steps; ++i) {
-      integrate(mass, {.v0 = body.v, .v1 = body.v + h * c.gravity, .L0 = body.L, .L1 = body.L}, h, body);
-    }
+    return [=] {
+      const MassProperties mass = principal_body(c.I);
+      Motion body = start_of(c.I, c.w, c.v);
+      for (int i = 0; i < steps; ++i) {
+        integrate(mass, {.v0 = body.v, .v1 = body.v + h * c.gravity, .L0 = body.L, .L1 = body.L}, h, body);
+      }
+      return body;
+    };
+  };
+}
+
+Run fly(const Case& c, int steps, double h) {
+  return [=] {
+    const Flight flight(principal_body(c.I), start_of(c.I, c.w, c.v), c.gravity);
+    Motion body;
+    for (int i = 1; i <= steps; ++i) body = flight.at(i * h);
     return body;
   };
 }
 
-Motion fly(const Case& c, int steps, double h) {
-  const Flight flight(principal_body(c.I), start_of(c.I, c.w, c.v), c.gravity);
-  Motion body;
-  for (int i = 1; i <= steps; ++i) body = flight.at(i * h);
-  return body;
-}
-
-template <typename Make>
-Simulate peer(Make make) {
-  return [make](const Case& c, int steps, double h) {
-    const auto world = make(1, c.I, c.w, c.v, c.gravity);
-    for (int i = 0; i < steps; ++i) world->step(h);
-    return world->motion();
+Simulate stepper(const bench::Method& method) {
+  return [method](const Case& c, int steps, double h) {
+    std::shared_ptr<bench::Peer> peer = method.make(bench::free_bodies(1, c.I, c.w, c.v, c.gravity), h);
+    return [=] {
+      for (int i = 0; i < steps; ++i) peer->step();
+      return peer->motion(0);
+    };
   };
 }
 
@@ -99,15 +106,18 @@ void write_curves(const char* file) {
     std::perror(file);
     std::exit(1);
   }
-  std::fprintf(csv, "case,method,dt,angle_error_rad,position_error_m,energy_error,cpu_s,qw,qx,qy,qz\n");
+  std::fprintf(csv, "case,method,dt,angle_error_rad,position_error_m,energy_error,cpu_s\n");
   std::vector<std::pair<std::string, Simulate>> methods;
   for (int i = 0; i < static_cast<int>(Integrator::closed_form); ++i) {
     const auto integrator = static_cast<Integrator>(i);
     methods.push_back({integrator_name(integrator), stepper(integrate_function(integrator))});
   }
   methods.push_back({"closed_form", fly});
-  methods.push_back({"bullet", peer(bench::make_bullet)});
-  methods.push_back({"ode", peer(bench::make_ode)});
+  methods.push_back({"bullet", stepper(bench::bullet_methods().front())});
+  methods.push_back({"ode", stepper(bench::ode_methods().front())});
+  for (const bench::Method& method : bench::mujoco_methods()) {
+    if (method.name == bench::kMujocoRungeKutta) methods.push_back({method.name, stepper(method)});
+  }
   std::vector<Case> cases;
   for (const RotationCase* c : {&kGeneric, &kPlate, &kDzhanibekov}) {
     cases.push_back({c->name, c->I, c->w0, Vec3::Zero(), Vec3::Zero(), c->q});
@@ -121,8 +131,9 @@ void write_curves(const char* file) {
         double cpu = 1e9;
         Motion end;
         for (int repeat = 0; repeat < 3; ++repeat) {
+          const Run run = simulate(c, 10 * rate, h);
           const auto begin = std::chrono::steady_clock::now();
-          end = simulate(c, 10 * rate, h);
+          end = run();
           cpu =
               std::min(cpu, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
         }
@@ -130,9 +141,9 @@ void write_curves(const char* file) {
         const Vec3 w_B = end.q.conjugate() * end.w;
         const double now =
             0.5 * (end.v.squaredNorm() + w_B.dot(c.I.cwiseProduct(w_B))) - c.gravity.dot(end.x);
-        std::fprintf(csv, "%s,%s,%.17g,%.3e,%.3e,%.3e,%.3e,%.17g,%.17g,%.17g,%.17g\n", c.name, name.c_str(),
-                     h, angle_between(end.q, c.end), (end.x - (t * c.v + 0.5 * t * t * c.gravity)).norm(),
-                     std::abs(now / energy - 1.0), cpu, end.q.w(), end.q.x(), end.q.y(), end.q.z());
+        std::fprintf(csv, "%s,%s,%.17g,%.3e,%.3e,%.3e,%.3e\n", c.name, name.c_str(), h,
+                     angle_between(end.q, c.end), (end.x - (t * c.v + 0.5 * t * t * c.gravity)).norm(),
+                     std::abs(now / energy - 1.0), cpu);
       }
     }
   }

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Runs the benchmark programs of a build and writes what they say to README.md, with the machine and the versions; those named replace their own sections.
 
-    run_benchmarks.py BUILD [NAME...]     all programs bench_*, or those named (`step` or `bench_step`)
+    run_benchmarks.py BUILD [NAME...] [--long]     all programs bench_*, or those named (`step` or `bench_step`)
 
-`stream` is stream.py, run in a network namespace of its own. Where valgrind is installed, bench_contacts is also run under
+`stream` is stream.py, run in a network namespace of its own; `error` is error_curves.py, minutes, and an hour with --long. Where valgrind is installed, bench_contacts is also run under
 callgrind for the instructions of one query: other than times they hardly differ between machines. Beside bench_NAME a
 program NAME_accuracy may print a Markdown table of its own; its first argument is the share of its full size to run,
 TUMBLE_SHARE or 0.001. A script NAME_curves.py runs it instead, if there is one, and writes what it draws beside the
@@ -77,6 +77,14 @@ def stream_table(build):
     return subprocess.run(command, check=True, stdout=subprocess.PIPE, text=True).stdout
 
 
+def error_table(build, options):
+    """What error_curves.py says."""
+    print("running error_curves.py", file=sys.stderr)
+    programs = build / "tests/bench"
+    command = [sys.executable, HERE / "error_curves.py", programs / "error_curves", programs, *options]
+    return subprocess.run(command, check=True, stdout=subprocess.PIPE, text=True).stdout
+
+
 def first_line(*command):
     return subprocess.run(command, check=True, capture_output=True, text=True).stdout.splitlines()[0]
 
@@ -96,12 +104,13 @@ def machine(build):
 
 def main():
     build = pathlib.Path(sys.argv[1])
-    wanted = {name.removeprefix("bench_") for name in sys.argv[2:]}
+    options = [argument for argument in sys.argv[2:] if argument == "--long"]
+    wanted = {name.removeprefix("bench_") for name in sys.argv[2:] if name not in options}
     programs = sorted(path for path in (build / "tests/bench").glob("bench_*") if os.access(path, os.X_OK))
     programs = [path for path in programs if path.is_file()
                 and (not wanted or path.name.removeprefix("bench_") in wanted)]
-    known = {path.name.removeprefix("bench_") for path in programs} | {"stream"}
-    if wanted - known or not (programs or "stream" in wanted):
+    known = {path.name.removeprefix("bench_") for path in programs} | {"stream", "error"}
+    if wanted - known or not (programs or wanted):
         sys.exit(f"no such benchmark: {' '.join(sorted(wanted)) or 'none is built'}")
     sections = []
     for path in programs:
@@ -114,6 +123,8 @@ def main():
             sections.append(f"## {accuracy.name}\n{own_table(accuracy)}")
     if not wanted or "stream" in wanted:
         sections.append(f"## stream\n{stream_table(build)}")
+    if not wanted or "error" in wanted:
+        sections.append(f"## error\n{error_table(build, options)}")
     print("\n".join(sections))
     readme = HERE / "README.md"
     kept = {} if not wanted or not readme.exists() else split(readme.read_text(encoding="utf-8"))

@@ -130,17 +130,29 @@ inline EnergyError measure_energy(World& world, double seconds) {
   return error;
 }
 
-/// Height over the ground at time t of a ball dropped from 1 m at rest, in long double.
-inline double bouncing_height(double restitution, double t) {
-  const long double g = 9.81L, fall = sqrtl(2.0L / g);
+/// A ball over the ground, as high as `height` [m] and rising at `speed` [m/s].
+struct Bouncing {
+  double height, speed;
+};
+/// At time t of a ball dropped at rest from `drop` [m], under gravity g [m/s^2], in long double.
+inline Bouncing bouncing_at(double restitution, double drop, double gravity, double t) {
+  const auto state = [](long double height, long double speed) {
+    return Bouncing{static_cast<double>(height), static_cast<double>(speed)};
+  };
+  const long double g = gravity, fall = sqrtl(2.0L * drop / g);
   long double left = t - fall, v = g * fall * restitution;
-  if (left < 0.0L) return static_cast<double>(1.0L - 0.5L * g * t * t);
+  if (left < 0.0L) return state(drop - 0.5L * g * t * t, -g * t);
   for (int bounce = 0; bounce < 2000; ++bounce) {
-    if (left < 2.0L * v / g) return static_cast<double>(v * left - 0.5L * g * left * left);
+    if (left < 2.0L * v / g) return state(v * left - 0.5L * g * left * left, v - g * left);
     left -= 2.0L * v / g;
     v *= restitution;
   }
-  return 0.0;
+  return {0.0, 0.0};
+}
+
+/// Height over the ground at time t of a ball dropped from 1 m at rest.
+inline double bouncing_height(double restitution, double t) {
+  return bouncing_at(restitution, 1.0, 9.81, t).height;
 }
 
 }  // namespace tumble::test

@@ -152,8 +152,8 @@ Truth dropped(const Scene& scene, double interval, std::size_t count) {
 
 Truth by_tiny_steps(const Scene& scene, double interval, std::size_t count) {
   const std::vector<Solid> solids = dynamic_of(solids_of(scene));
-  Truth coarse = sample_steps(scene, solids.size(), 1.0 / 4000.0, interval, count);
-  Truth fine = sample_steps(scene, solids.size(), 1.0 / 8000.0, interval, count);
+  Truth coarse = sample_steps(scene, solids.size(), 1.0 / 50000.0, interval, count);
+  Truth fine = sample_steps(scene, solids.size(), 1.0 / 100000.0, interval, count);
   for (std::size_t k = 0; k <= count; ++k) {
     for (std::size_t i = 0; i < solids.size(); ++i) {
       fine.doubt = std::max(fine.doubt, distance(solids[i], coarse.samples[k][i], fine.samples[k][i]));

@@ -26,7 +26,7 @@ Truth sliding_to_roll(const Scene& scene, double interval, std::size_t count);
 /// Bodies at rest on each other that fall together, as far as the lowest of them is above z = 0, and stop for ever.
 Truth dropped(const Scene& scene, double interval, std::size_t count);
 
-/// Whatever the scene: our own exact level at 1/8000 s. Doubt is its distance from the same at 1/4000 s.
+/// Whatever the scene: our own exact level at 1e-5 s. Doubt is its distance from the same at 2e-5 s.
 Truth by_tiny_steps(const Scene& scene, double interval, std::size_t count);
 
 /// Farthest that a point of the solid's bounding ball may be from where `truth` has it [m].

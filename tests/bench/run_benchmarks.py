@@ -3,7 +3,8 @@
 
     run_benchmarks.py BUILD [NAME...] [--long]     all programs bench_*, or those named (`step` or `bench_step`)
 
-`stream` is stream.py, run in a network namespace of its own; `error` is error_curves.py, minutes, and an hour with --long. Where valgrind is installed, bench_contacts is also run under
+`stream` is stream.py, run in a network namespace of its own; `error` is error_curves.py: minutes, with --long
+hours. Where valgrind is installed, bench_contacts is also run under
 callgrind for the instructions of one query: other than times they hardly differ between machines. Beside bench_NAME a
 program NAME_accuracy may print a Markdown table of its own; its first argument is the share of its full size to run,
 TUMBLE_SHARE or 0.001. A script NAME_curves.py runs it instead, if there is one, and writes what it draws beside the

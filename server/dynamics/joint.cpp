@@ -23,13 +23,21 @@ Joint make_fixed_joint(const Vec3& pA, const Vec3& pB, const Quat& q_AB, double 
 }
 
 ScalarRow make_joint_row(const HeldPoint& held, std::uint32_t a, std::uint32_t b, const SolverBody& A,
-                         const SolverBody& B, double h, const BoundSettings& settings) {
-  const Vec3 rA = A.q * held.pA, rB = B.q * held.pB;
+                         const SolverBody& B) {
   ScalarRow row;
   row.a = a;
   row.b = b;
   row.lower = -kInfinity;
   row.n = A.q * held.n_A;
+  row.rA = A.q * held.pA;
+  row.rB = B.q * held.pB;
+  return row;
+}
+
+ScalarRow make_joint_row(const HeldPoint& held, std::uint32_t a, std::uint32_t b, const SolverBody& A,
+                         const SolverBody& B, double h, const BoundSettings& settings) {
+  ScalarRow row = make_joint_row(held, a, b, A, B);
+  const Vec3 rA = row.rA, rB = row.rB;
   row.rA = exp_map(0.25 * h * (A.w0 + A.w)) * rA;
   row.rB = exp_map(0.25 * h * (B.w0 + B.w)) * rB;
   row.gap = std::clamp(row.n.dot(B.x + rB - A.x - rA), -h * settings.push_speed, h * settings.push_speed);

@@ -27,6 +27,10 @@ Joint make_ball_joint(const Vec3& pA, const Vec3& pB);
 /// [m] > 0 away: where a turn counts like a displacement.
 Joint make_fixed_joint(const Vec3& pA, const Vec3& pB, const Quat& q_AB, double arm);
 
+/// One row of a joint now, as a blow meets it: u = 0.
+ScalarRow make_joint_row(const HeldPoint& held, std::uint32_t a, std::uint32_t b, const SolverBody& A,
+                         const SolverBody& B);
+
 /// One row of a joint over a step h. With the arms at the middle of the step, as for ropes: a body that turns about its
 /// joint keeps its distance for bodies that move with the average velocity, and the joint does no work. A gap left by
 /// rounding or by the scene closes with gap/h, at most settings.push_speed.

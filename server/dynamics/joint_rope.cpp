@@ -55,4 +55,14 @@ bool make_rope_row(const Rope& rope, const SolverBody& A, const SolverBody& B, d
   return true;
 }
 
+bool make_taut_rope_row(const Rope& rope, const SolverBody& A, const SolverBody& B, double slack,
+                        ScalarRow& row) {
+  const Vec3 line = A.x + row.rA - B.x - row.rB;
+  const double distance = std::sqrt(line.squaredNorm());
+  if (!(distance > 0.0) || rope.length - distance > slack) return false;
+  row.lower = 0.0;
+  row.n = line / distance;
+  return true;
+}
+
 }  // namespace tumble

@@ -19,4 +19,8 @@ struct Rope {
 bool make_rope_row(const Rope& rope, const SolverBody& A, const SolverBody& B, double h,
                    const BoundSettings& settings, ScalarRow& row);
 
+/// The row as a blow meets it now: u >= 0. False if more than `slack` [m] is left of the rope's length.
+bool make_taut_rope_row(const Rope& rope, const SolverBody& A, const SolverBody& B, double slack,
+                        ScalarRow& row);
+
 }  // namespace tumble

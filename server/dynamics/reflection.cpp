@@ -6,9 +6,11 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "dynamics/best_impulses.h"
 #include "dynamics/interior_point.h"
+#include "dynamics/linkage.h"
 #include "dynamics/point_impact.h"
 #include "dynamics/solver.h"
 
@@ -34,8 +36,13 @@ void apply(ContactProblem& problem, const PointContact& c, const Vec3& p) {
 /// One pass over the contacts that approach.
 class Pass {
  public:
-  Pass(ContactProblem& problem, const std::vector<std::uint32_t>& violated)
-      : problem_(problem), violated_(violated), p_(violated.size(), Vec3::Zero()) {
+  Pass(ContactProblem& problem, const Linkage& linkage, std::size_t first_rope,
+       const std::vector<std::uint32_t>& violated)
+      : problem_(problem),
+        linkage_(linkage),
+        first_rope_(first_rope),
+        violated_(violated),
+        p_(violated.size(), Vec3::Zero()) {
     for (const std::uint32_t i : violated) {
       u_before_.push_back(contact_velocity(problem, problem.contacts[i]));
       frictionless_ = frictionless_ && !(problem.contacts[i].friction > 0.0);
@@ -62,12 +69,16 @@ class Pass {
 
  private:
   Vec3 point_impact(const PointContact& c, const Vec3& u) const {
-    if (frictionless_) return {-(1.0 + c.restitution) * u.x() * c.mass_n, 0.0, 0.0};
-    return solve_point_impact(inverse_mass_of(c), u, c.friction, c.restitution);
+    const double factor = -(1.0 + c.restitution) * u.x();
+    if (frictionless_ && linkage_.empty()) return {factor * c.mass_n, 0.0, 0.0};
+    const Mat3 K = inverse_mass_of(c);
+    if (frictionless_) return {factor / K(0, 0), 0.0, 0.0};
+    return solve_point_impact(K, u, c.friction, c.restitution);
   }
 
   Mat3 inverse_mass_of(const PointContact& c) const {
-    return inverse_mass(problem_.bodies[c.a], problem_.bodies[c.b], c);
+    return linkage_.empty() ? inverse_mass(problem_.bodies[c.a], problem_.bodies[c.b], c)
+                            : linkage_.inverse_mass(problem_, c);
   }
 
   const PointContact& contact(std::size_t k) const { return problem_.contacts[violated_[k]]; }
@@ -77,10 +88,29 @@ class Pass {
     p_[k] += p;
     c.lambda += p;
     apply(problem_, c, p);
+    linkage_.hold(problem_.bodies);
   }
 
   /// Normal rows of A.
-  Eigen::MatrixXd normal_matrix() {
+  Eigen::MatrixXd normal_matrix() const {
+    return linkage_.empty() ? normal_matrix_of_free_bodies() : normal_matrix_of_linked_bodies();
+  }
+
+  Eigen::MatrixXd normal_matrix_of_linked_bodies() const {
+    const auto n = static_cast<Eigen::Index>(violated_.size());
+    Eigen::MatrixXd A(n, n);
+    for (Eigen::Index j = 0; j < n; ++j) {
+      const PointContact& cj = contact(static_cast<std::size_t>(j));
+      const std::vector<SolverBody> bodies = linkage_.answer(problem_, cj, cj.n);
+      for (Eigen::Index i = 0; i < n; ++i) {
+        const PointContact& ci = contact(static_cast<std::size_t>(i));
+        A(i, j) = ci.n.dot(relative_velocity(bodies[ci.a], bodies[ci.b], ci.rA, ci.rB));
+      }
+    }
+    return 0.5 * (A + A.transpose());
+  }
+
+  Eigen::MatrixXd normal_matrix_of_free_bodies() const {
     const auto n = static_cast<Eigen::Index>(violated_.size());
     Eigen::MatrixXd A = Eigen::MatrixXd::Zero(n, n);
     for (Eigen::Index j = 0; j < n; ++j) {
@@ -176,6 +206,11 @@ class Pass {
       part.contacts.push_back(c);
       speed = std::max(speed, std::sqrt(u_before_[k].squaredNorm()));
     }
+    for (ScalarRow row : problem_.rows) {
+      if (!row.is_two_sided()) continue;
+      row.bound = row.lambda = 0.0;
+      part.rows.push_back(row);
+    }
     for (SolverBody& body : part.bodies) {
       body.v0 = body.v;
       body.w0 = body.w;
@@ -209,8 +244,24 @@ class Pass {
     for (std::size_t k = 0; k < violated_.size(); ++k) {
       take(k, Vec3(contact(k).restitution * compression[k].x(), 0.0, 0.0));
     }
-    if (!frictionless_) rub(compression);
+    pull_ropes();
+    if (!frictionless_) {
+      rub(compression);
+      pull_ropes();
+    }
     return clamp_energy(compression);
+  }
+
+  /// The ropes hold against the expansion as they did against the compression.
+  void pull_ropes() {
+    std::vector<std::uint32_t> ropes;
+    std::copy_if(violated_.begin(), violated_.end(), std::back_inserter(ropes),
+                 [this](std::uint32_t i) { return i >= first_rope_; });
+    if (ropes.empty()) return;
+    Pass pass(problem_, linkage_, first_rope_, ropes);
+    pass.compress();
+    // They stand behind the contacts.
+    for (std::size_t k = 0; k < ropes.size(); ++k) p_[p_.size() - ropes.size() + k] += pass.p_[k];
   }
 
   /// Friction of the expansion in discs of fixed size: a convex problem, one contact at a time.
@@ -265,44 +316,96 @@ class Pass {
   }
 
   ContactProblem& problem_;
+  const Linkage& linkage_;
+  const std::size_t first_rope_;  // contacts from here on are ropes
   const std::vector<std::uint32_t>& violated_;
   std::vector<Vec3> p_, u_before_;  // contact frames: impulses so far, velocities before the pass
   bool frictionless_ = true;
 };
 
+/// A taut rope is a contact without friction and restitution along its line.
+PointContact as_contact(const ScalarRow& rope) {
+  PointContact contact{.a = rope.a,
+                       .b = rope.b,
+                       .n = rope.n,
+                       .t1 = {},
+                       .t2 = {},
+                       .rA = rope.rA,
+                       .rB = rope.rB,
+                       .separation = 0.0,
+                       .friction = 0.0,
+                       .restitution = 0.0};
+  set_tangents(contact);
+  contact.mass_n = rope.mass;
+  return contact;
+}
+
+/// The blow on a problem whose ropes stand behind its contacts.
+class Blow {
+ public:
+  Blow(ContactProblem& problem, std::size_t first_rope)
+      : problem_(problem), linkage_(problem), first_rope_(first_rope) {
+    linkage_.hold(problem_.bodies);
+    double speed = 0.0;
+    bool friction = false;
+    for (PointContact& c : problem_.contacts) {
+      c.lambda.setZero();
+      speed = std::max(speed, std::sqrt(contact_velocity(problem_, c).squaredNorm()));
+      friction = friction || c.friction > 0.0;
+    }
+    rest_ = (friction ? kAtRestWithFriction : kAtRest) * speed;
+  }
+
+  ReflectionReport run(const ReflectionSettings& settings) {
+    ReflectionReport report;
+    while (find_violated()) {
+      if (report.passes == settings.max_passes) {
+        report.capped = true;
+        violated_.clear();
+        for (std::uint32_t i = 0; i < problem_.contacts.size(); ++i) {
+          if (problem_.contacts[i].mass_n > 0.0) violated_.push_back(i);
+        }
+        Pass(problem_, linkage_, first_rope_, violated_).compress();
+        break;
+      }
+      ++report.passes;
+      if (Pass(problem_, linkage_, first_rope_, violated_).reflect()) ++report.clamped;
+    }
+    return report;
+  }
+
+ private:
+  /// Contacts that approach, and with them the ropes that hold against them in the same instant.
+  bool find_violated() {
+    violated_.clear();
+    bool any = false;
+    for (std::uint32_t i = 0; i < problem_.contacts.size(); ++i) {
+      const PointContact& c = problem_.contacts[i];
+      if (!(c.mass_n > 0.0)) continue;
+      const double u_n = contact_velocity(problem_, c).x();
+      any = any || u_n < -rest_;
+      if (u_n < (i < first_rope_ ? -rest_ : rest_)) violated_.push_back(i);
+    }
+    return any;
+  }
+
+  ContactProblem& problem_;
+  Linkage linkage_;
+  std::size_t first_rope_;
+  std::vector<std::uint32_t> violated_;
+  double rest_ = 0.0;  // [m/s]
+};
+
 }  // namespace
 
 ReflectionReport reflect(ContactProblem& problem, const ReflectionSettings& settings) {
-  ReflectionReport report;
-  double speed = 0.0;
-  bool friction = false;
-  for (PointContact& c : problem.contacts) {
-    c.lambda.setZero();
-    speed = std::max(speed, std::sqrt(contact_velocity(problem, c).squaredNorm()));
-    friction = friction || c.friction > 0.0;
+  const std::size_t contacts = problem.contacts.size();
+  for (const ScalarRow& row : problem.rows) {
+    if (!row.is_soft() && !row.is_two_sided()) problem.contacts.push_back(as_contact(row));
   }
-  const double rest = (friction ? kAtRestWithFriction : kAtRest) * speed;
-  std::vector<std::uint32_t> violated;
-  const auto find_violated = [&] {
-    violated.clear();
-    for (std::uint32_t i = 0; i < problem.contacts.size(); ++i) {
-      const PointContact& c = problem.contacts[i];
-      if (c.mass_n > 0.0 && contact_velocity(problem, c).x() < -rest) violated.push_back(i);
-    }
-  };
-  for (find_violated(); !violated.empty(); find_violated()) {
-    if (report.passes == settings.max_passes) {
-      report.capped = true;
-      violated.clear();
-      for (std::uint32_t i = 0; i < problem.contacts.size(); ++i) {
-        if (problem.contacts[i].mass_n > 0.0) violated.push_back(i);
-      }
-      Pass(problem, violated).compress();
-      break;
-    }
-    ++report.passes;
-    if (Pass(problem, violated).reflect()) ++report.clamped;
-  }
+  const ReflectionReport report = Blow(problem, contacts).run(settings);
+  problem.contacts.erase(problem.contacts.begin() + static_cast<std::ptrdiff_t>(contacts),
+                         problem.contacts.end());
   return report;
 }
 

@@ -308,4 +308,16 @@ std::optional<TimeOfImpact> find_impact(const MovingShape& a, const MovingShape&
   return Search(a, b, search).run(search.from);
 }
 
+double time_above(double gap, double w, double a) {
+  if (!(gap > 0.0)) return 0.0;
+  return first_root(gap, w, a, kInfinity).value_or(kInfinity);
+}
+
+double time_apart(const Vec3& d, const Vec3& u, const Vec3& g, double distance) {
+  const double gap = std::sqrt(d.squaredNorm()) - distance;
+  if (!(gap > 0.0)) return 0.0;
+  if (g.isZero(0.0)) return spheres_touch(d, u, distance, kInfinity).value_or(kInfinity);
+  return time_above(gap, -std::sqrt(u.squaredNorm()), -std::sqrt(g.squaredNorm()));
+}
+
 }  // namespace tumble

@@ -36,4 +36,11 @@ struct TimeOfImpact {
 std::optional<TimeOfImpact> find_impact(const MovingShape& a, const MovingShape& b,
                                         const ImpactSearch& search);
 
+/// How long a point with the height `gap` [m], the rate w [m/s] and the acceleration a [m/s^2] stays above 0 [s].
+double time_above(double gap, double w, double a);
+
+/// How long two points stay further apart than `distance` [m], at least: d, u [m/s] and g [m/s^2] of one relative to the
+/// other. To round-off where g is 0.
+double time_apart(const Vec3& d, const Vec3& u, const Vec3& g, double distance);
+
 }  // namespace tumble

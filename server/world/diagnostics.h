@@ -14,6 +14,7 @@ struct Counters {
   std::uint64_t boxes_renewed = 0;  ///< Broad-phase boxes that a body left.
   std::uint64_t bodies_stepped = 0, bodies_skipped_resting = 0;
   std::uint64_t bodies_skipped_flying = 0;  ///< Not visited while they met nobody.
+  std::uint64_t pairs_skipped_clear = 0;    ///< Not looked at, since their flights keep them apart.
   std::uint64_t islands_solved = 0, islands_accepted = 0, islands_free = 0;
   std::uint64_t islands_smooth = 0;  ///< Of springs only, by collocation.
   std::uint64_t sweeps = 0;

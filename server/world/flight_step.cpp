@@ -67,7 +67,7 @@ void World::note_way(std::uint32_t slot, const StepContext& step) {
     scratch_.events.set_trajectory(slot, Trajectory(masses_[slot], start, step.begin, flight, 0.0));
   } else if (flies) {
     take_off(slot);
-    set_flight_trajectory(slot);
+    if (scratch_.events.has_trajectory(slot)) set_flight_trajectory(slot);  // struck at the very start
   } else if (step.begin > 0.0) {
     integrate_free(slot, whole);
     note_end(slot, start, step);
@@ -104,6 +104,7 @@ void World::take_off(std::uint32_t slot) {
   if (flight_state_[slot] != FlightState::none && step_count_ < body.last && body.flight.load() == load)
     return;
   body.flight = Flight(masses_[slot], motions_[slot], load);
+  ++way_[slot];
   body.takeoff = step_count_;
   const double steps = kLargestPhase / (body.flight.phase_rate() * options_.time_step);
   body.last = step_count_ + static_cast<std::uint64_t>(std::max(1.0, std::min(0x1p60, steps)));
@@ -196,6 +197,7 @@ void World::descend(std::uint32_t slot, std::uint64_t now) {
 void World::land(std::uint32_t slot) {
   descend(slot, step_count_);
   flight_state_[slot] = FlightState::none;
+  ++way_[slot];
 }
 
 }  // namespace tumble

@@ -23,6 +23,7 @@ class ImpactEvents {
   /// Forgets everything; room for bodies in slots below `capacity`.
   void begin_step(std::uint32_t capacity);
 
+  bool has_trajectory(std::uint32_t slot) const { return bodies_[slot].version > 0; }
   const Trajectory& trajectory(std::uint32_t slot) const { return bodies_[slot].trajectory; }
   /// Replaces the trajectory; what was foreseen for the body is void.
   void set_trajectory(std::uint32_t slot, const Trajectory& trajectory);

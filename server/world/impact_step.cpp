@@ -88,21 +88,29 @@ bool World::flies(const Contact& contact, double h) const {
   return approach.impact_speed > contact.threshold || approach.gap > kTouching;
 }
 
-void World::begin_impacts(const StepContext&) {
+void World::begin_impacts() {
   ImpactEvents& events = scratch_.events;
   events.begin_step(body_capacity());
-  for (std::uint32_t slot = 0; slot < body_capacity(); ++slot) {
-    if (!bodies_[slot].exists) continue;
-    const bool driven = bodies_[slot].type == BodyType::kinematic;
-    events.set_trajectory(slot,
-                          driven ? Trajectory::driven(motions_[slot], 0.0) : Trajectory(motions_[slot]));
-  }
+  for (const std::uint32_t slot : kinematic_)
+    events.set_trajectory(slot, Trajectory::driven(motions_[slot], 0.0));
   const Islands& islands = scratch_.islands;
   for (std::size_t island = 0; island < islands.count(); ++island) {
+    if (islands.body_begin[island + 1] - islands.body_begin[island] < 2) continue;
     const std::uint32_t* bodies = islands.bodies.data();
     events.form_group({bodies + islands.body_begin[island], bodies + islands.body_begin[island + 1]});
   }
   scratch_.contacts_indexed = false;
+}
+
+const Trajectory& World::way(std::uint32_t slot) {
+  if (!scratch_.events.has_trajectory(slot)) {
+    if (flight_state_[slot] == FlightState::none) {
+      scratch_.events.set_trajectory(slot, Trajectory(motions_[slot]));
+    } else {
+      set_flight_trajectory(slot);
+    }
+  }
+  return scratch_.events.trajectory(slot);
 }
 
 void World::advance_impacts(const StepContext& step) {
@@ -116,9 +124,11 @@ void World::advance_impacts(const StepContext& step) {
   contacts_.settle();
   for (const std::uint32_t slot : kinematic_) motions_[slot] = events.trajectory(slot).start();
   for (std::uint32_t slot = 0; slot < body_capacity(); ++slot) {
-    if (!bodies_[slot].exists || !movable(slot) || events.trajectory(slot).stays()) continue;
+    if (!bodies_[slot].exists || !movable(slot)) continue;
+    const bool undisturbed = flight_state_[slot] == FlightState::flying &&
+                             (!events.has_trajectory(slot) || events.trajectory(slot).flies());
+    if (!undisturbed && (!events.has_trajectory(slot) || events.trajectory(slot).stays())) continue;
     const Motion last_good = motions_[slot];
-    const bool undisturbed = flight_state_[slot] == FlightState::flying && events.trajectory(slot).flies();
     motions_[slot] =
         undisturbed ? motion_in_flight(slot, step_count_ + 1) : events.trajectory(slot).at(step.h);
     if (!is_finite(motions_[slot])) contain(slot, last_good);
@@ -184,8 +194,9 @@ void World::absorb_tired(Blow& blow) {
 void World::move_to(const Blow& blow, double time) {
   for (const std::uint32_t slot : blow.members) {
     const Motion last_good = motions_[slot];
+    const Motion moved = way(slot).at(time);
     land(slot);
-    motions_[slot] = scratch_.events.trajectory(slot).at(time);
+    motions_[slot] = moved;
     if (!is_finite(motions_[slot])) contain(slot, last_good);
   }
   for (const std::uint32_t slot : kinematic_) motions_[slot] = scratch_.events.trajectory(slot).at(time);
@@ -223,9 +234,38 @@ void World::build_blow_problem(const Blow& blow) {
       scratch_.contact_source.erase(scratch_.contact_source.begin() + static_cast<std::ptrdiff_t>(i));
     }
   }
+  for (const std::uint32_t index : ties_of(blow)) add_held_rows(index);
   end_problem();
   if (!blow.tired) return;
   for (PointContact& c : problem.contacts) c.restitution = 0.0;
+}
+
+std::vector<std::uint32_t> World::ties_of(const Blow& blow) const {
+  std::vector<std::uint32_t> ties;
+  for (std::uint32_t index = 0; index < ties_.size(); ++index) {
+    const Tie& tie = ties_[index];
+    if ((tie.a != kWorld && blow.has(tie.a)) || (tie.b != kWorld && blow.has(tie.b))) ties.push_back(index);
+  }
+  return ties;
+}
+
+/// Joints and taut ropes hold while a blow lasts; springs give way.
+void World::add_held_rows(std::uint32_t tie_index) {
+  const Tie& tie = ties_[tie_index];
+  if (std::holds_alternative<Spring>(tie.law)) return;
+  ScalarRow row;
+  row.a = problem_body(tie.a, 0.0);
+  row.b = problem_body(tie.b, 0.0);
+  const SolverBody& A = scratch_.problem.bodies[row.a];
+  const SolverBody& B = scratch_.problem.bodies[row.b];
+  if (const Joint* joint = std::get_if<Joint>(&tie.law)) {
+    for (std::size_t i = 0; i < joint->rows; ++i)
+      scratch_.problem.rows.push_back(make_joint_row(joint->held[i], row.a, row.b, A, B));
+    return;
+  }
+  row.rA = A.q * tie.pA;
+  row.rB = B.q * tie.pB;
+  if (make_taut_rope_row(std::get<Rope>(tie.law), A, B, kTouching, row)) scratch_.problem.rows.push_back(row);
 }
 
 void World::resolve_blow(const Blow& blow, const StepContext& rest) {
@@ -306,11 +346,7 @@ void World::continue_from(const Blow& blow, const StepContext& rest) {
     if (contact.flies) contact.impulse.fill(Vec3::Zero());
     if (!contact.flies && contact.manifold.count > 0) held.push_back(index);
   }
-  std::vector<std::uint32_t> ties;
-  for (std::uint32_t index = 0; index < ties_.size(); ++index) {
-    const Tie& tie = ties_[index];
-    if ((tie.a != kWorld && blow.has(tie.a)) || (tie.b != kWorld && blow.has(tie.b))) ties.push_back(index);
-  }
+  const std::vector<std::uint32_t> ties = ties_of(blow);
   std::vector<std::uint32_t> bound;  // slots that a contact or tie holds
   for (const std::uint32_t index : held) {
     bound.push_back(contacts_.all()[index].body_a);
@@ -354,8 +390,7 @@ void World::foresee(const Blow& blow, const StepContext& rest) {
 
 void World::foresee(const Contact& contact, const StepContext& rest) {
   if (!contact.flies) return;
-  const Trajectory& way_a = scratch_.events.trajectory(contact.body_a);
-  const Trajectory& way_b = scratch_.events.trajectory(contact.body_b);
+  const Trajectory &way_a = way(contact.body_a), &way_b = way(contact.body_b);
   if (way_a.stays() && way_b.stays()) return;
   const Geometry &a = geometries_[contact.pair.a], &b = geometries_[contact.pair.b];
   ++counters_.impact_searches;

@@ -219,6 +219,7 @@ bool World::try_rest(double residual) {
     motions_[*slot].L.setZero();
     motions_[*slot].w.setZero();
     awake_flag_[*slot] = 0;
+    ++way_[*slot];
     const auto next = slot + 1 == movable_end ? begin : slot + 1;
     rest_next_[*slot] = *next;
   }

@@ -45,7 +45,8 @@ struct Options {
   bool skip_resting = true;  ///< Off: resting islands are stepped like all others.
 
   // Flight
-  /// Off: a body in free flight is visited at every step also while it can meet nobody. It moves the same.
+  /// Off: a body in free flight is visited at every step also while it can meet nobody, and so is a pair whose flights
+  /// keep it apart. They move the same.
   bool skip_flying = true;
 };
 

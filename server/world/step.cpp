@@ -4,6 +4,7 @@
 #include <iterator>
 #include <utility>
 
+#include "dynamics/time_of_impact.h"
 #include "world/world.h"
 
 namespace tumble {
@@ -91,6 +92,7 @@ void World::apply_pushes(const StepContext&) {
       load.add_world_torque(share * push.torque);
     }
     pushed_[slot] = 1;
+    ++way_[slot];
     scratch_.loaded.push_back(slot);
     descend(slot, step_count_);
     wake_slot(slot);
@@ -180,7 +182,7 @@ bool World::is_lost(GeometryPair pair) const {
   if (!broad_phase_.overlaps(pair) || jointed(geometries_[pair.a].body, geometries_[pair.b].body))
     return true;
   const std::vector<GeometryPair>&whole = scratch_.split_pairs, &pairs = scratch_.pairs;
-  return std::binary_search(whole.begin(), whole.end(), GeometryPair{pair.a, pair.b}) &&
+  return !whole.empty() && std::binary_search(whole.begin(), whole.end(), GeometryPair{pair.a, pair.b}) &&
          !std::binary_search(pairs.begin(), pairs.end(), pair);
 }
 
@@ -210,12 +212,64 @@ double World::pair_margin(Contact& contact, const StepContext& step) const {
   if (step.impact_events && (contact.fast || contact.restitution > 0.0)) {
     way += step.h * (turning_speed(a, A) + turning_speed(b, B));
   }
-  return std::min(a.contact_margin, b.contact_margin) + way;
+  const double margin = std::min(a.contact_margin, b.contact_margin);
+  if (contact.flies && step.impact_events && contact.restitution > 0.0 && keeps_its_way(contact.body_a) &&
+      keeps_its_way(contact.body_b)) {
+    // In an impact, if at all, and seen when it is due: twice the way of the step is far enough.
+    const Vec3 a_AB = acceleration_on_way(contact.body_b) - acceleration_on_way(contact.body_a);
+    return std::min(margin + way, 2.0 * way + step.h * step.h * a_AB.norm() + 0.005 * margin);
+  }
+  return margin + way;
 }
 
 void World::update_contacts(const StepContext& step) {
-  for (const std::uint32_t index : active_contacts_) update_contact(index, step);
+  for (const std::uint32_t index : active_contacts_) {
+    if (options_.skip_flying && is_clear(contacts_.all()[index])) {
+      ++counters_.pairs_skipped_clear;
+    } else {
+      update_contact(index, step);
+    }
+  }
   refresh_active();
+}
+
+bool World::is_clear(const Contact& contact) const {
+  return step_count_ < contact.clear_until && way_[contact.body_a] == contact.way_a &&
+         way_[contact.body_b] == contact.way_b;
+}
+
+bool World::keeps_its_way(std::uint32_t slot) const {
+  if (!movable(slot)) return bodies_[slot].type == BodyType::fixed;
+  if (flight_state_[slot] == FlightState::none) return !awake(slot);
+  return !pushed_[slot] && free_[slot].flight.load().linear_damping == 0.0;
+}
+
+Vec3 World::acceleration_on_way(std::uint32_t slot) const {
+  return movable(slot) && awake(slot) ? free_[slot].flight.load().acceleration : Vec3(Vec3::Zero());
+}
+
+/// From balls about the centres of mass that hold the shapes, or such a ball and a plane.
+void World::foresee_clearance(Contact& contact, double margin, double h) const {
+  contact.clear_until = 0;
+  if (!keeps_its_way(contact.body_a) || !keeps_its_way(contact.body_b)) return;
+  const Geometry &a = geometries_[contact.pair.a], &b = geometries_[contact.pair.b];
+  const Motion &A = motions_[contact.body_a], &B = motions_[contact.body_b];
+  const Vec3 g = acceleration_on_way(contact.body_b) - acceleration_on_way(contact.body_a);
+  const bool plane_a = std::holds_alternative<HalfSpace>(a.shape);
+  double time = 0.0;
+  if (plane_a || std::holds_alternative<HalfSpace>(b.shape)) {
+    const Geometry &plane = plane_a ? a : b, &other = plane_a ? b : a;
+    const Pose X_WS = geometry_pose(plane);
+    const Vec3 n = rotation_matrix(X_WS.q).col(2);
+    const double sign = plane_a ? 1.0 : -1.0,
+                 gap = n.dot((plane_a ? B : A).x - X_WS.p) - other.reach() - margin;
+    time = time_above(gap, sign * n.dot(B.v - A.v), sign * n.dot(g));
+  } else {
+    time = time_apart(B.x - A.x, B.v - A.v, g, a.reach() + b.reach() + margin);
+  }
+  contact.clear_until = step_count_ + static_cast<std::uint64_t>(std::min(0x1p40, time / h));
+  contact.way_a = way_[contact.body_a];
+  contact.way_b = way_[contact.body_b];
 }
 
 void World::update_contact(std::uint32_t index, const StepContext& step) {
@@ -224,11 +278,12 @@ void World::update_contact(std::uint32_t index, const StepContext& step) {
   const Geometry& b = geometries_[contact.pair.b];
   const Manifold old_manifold = contact.manifold;
   const Pose X_WA = geometry_pose(a);
-  update_manifold(a.shape, X_WA, b.shape, geometry_pose(b), pair_margin(contact, step), options_.narrow_phase,
-                  contact.cache, counters_.narrow_phase, contact.manifold, contact.pair.part);
+  const double margin = pair_margin(contact, step);
+  update_manifold(a.shape, X_WA, b.shape, geometry_pose(b), margin, options_.narrow_phase, contact.cache,
+                  counters_.narrow_phase, contact.manifold, contact.pair.part);
   contact.normal_W = X_WA.q * contact.manifold.normal_A;
   if (contact.pair.part > 0) drop_repeated_points(contacts_.all(), index);
-  if (contact.manifold.count == 0) return;
+  if (contact.manifold.count == 0) return foresee_clearance(contact, margin, step.h);
   transport_impulses(old_manifold, contact.manifold, contact.normal_W, a.contact_margin, contact.impulse);
   wake_slot(contact.body_a);
   wake_slot(contact.body_b);
@@ -308,7 +363,7 @@ void World::advance_islands(const StepContext& whole_step) {
   step_push_work_ = 0.0;
   StepContext step = whole_step;
   step.ways_only = !scratch_.flying.empty();
-  if (step.ways_only) begin_impacts(step);
+  if (step.ways_only) begin_impacts();
   const Islands& islands = scratch_.islands;
   for (std::size_t island = 0; island < islands.count(); ++island) {
     if (islands.edge_begin[island] == islands.edge_begin[island + 1]) {

@@ -96,6 +96,7 @@ std::uint32_t World::take_slot() {
   masses_.emplace_back();
   motions_.emplace_back();
   flight_state_.push_back(FlightState::none);
+  way_.push_back(0);
   free_.emplace_back();
   awake_flag_.push_back(0);
   pushed_.push_back(0);
@@ -369,6 +370,7 @@ void World::wake_slot(std::uint32_t slot) {
   active_stale_ = true;
   for (std::uint32_t next = slot; !awake(next);) {
     awake_flag_[next] = 1;
+    ++way_[next];
     calm_for_[next] = 0.0;
     const std::uint32_t after = rest_next_[next];
     rest_next_[next] = next;

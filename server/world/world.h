@@ -238,6 +238,12 @@ class World {
   Aabb contact_bounds(const Geometry& geometry, double h) const;
   Contact make_contact(GeometryPair pair) const;
   double pair_margin(Contact& contact, const StepContext& step) const;
+  /// On a way that is known until something happens to it: in undamped flight, resting, or fixed.
+  bool keeps_its_way(std::uint32_t slot) const;
+  Vec3 acceleration_on_way(std::uint32_t slot) const;
+  bool is_clear(const Contact& contact) const;
+  /// Notes how long a pair that is far apart stays so.
+  void foresee_clearance(Contact& contact, double margin, double h) const;
 
   // flight_step.cpp: free bodies.
   bool aloft(std::uint32_t slot) const { return flight_state_[slot] == FlightState::aloft; }
@@ -300,7 +306,9 @@ class World {
   bool flies(const Contact& contact, double h) const;
   /// Of b relative to a, by forces [m/s^2].
   Vec3 relative_acceleration(const Contact& contact) const;
-  void begin_impacts(const StepContext& step);
+  void begin_impacts();
+  /// Made when it is asked for, if the body has not been given one in this step.
+  const Trajectory& way(std::uint32_t slot);
   void advance_impacts(const StepContext& step);
   void strike(const ImpactEvent& event, const StepContext& step);
   Blow gather_blow(const ImpactEvent& event);
@@ -310,6 +318,8 @@ class World {
   void update_contacts_of(Blow& blow, const StepContext& rest);
   void resolve_blow(const Blow& blow, const StepContext& rest);
   void build_blow_problem(const Blow& blow);
+  std::vector<std::uint32_t> ties_of(const Blow& blow) const;
+  void add_held_rows(std::uint32_t tie_index);
   void store_blow();
   /// Bounces of the pair that are still to come end within the rest of the step.
   bool ends_bouncing(std::uint32_t contact_index, const StepContext& rest) const;
@@ -338,7 +348,8 @@ class World {
   // State, by slot: hot arrays.
   std::vector<Motion> motions_;  // out of date where aloft
   std::vector<FlightState> flight_state_;
-  std::vector<FreeBody> free_;  // where in flight
+  std::vector<FreeBody> free_;      // where in flight
+  std::vector<std::uint32_t> way_;  // number of its flight or rest
   std::vector<std::uint8_t> awake_flag_;
   std::vector<std::uint8_t> pushed_;      // has an active push: must not rest
   std::vector<std::uint8_t> paired_;      // some contact, open or closed, has it

@@ -224,5 +224,23 @@ TEST(ImpactStep, ABodyMetInTheMiddleOfAStepIsMet) {
   EXPECT_NEAR(world.motion(0).v.norm(), 0.0, 1e-9);
 }
 
+TEST(ImpactStep, PairsThatTheirFlightsKeepApartAreNotLookedAtAndMoveTheSame) {
+  Options options = test::with_step(1e-3);
+  World skipping = test::elastic_666(3, 1e-3);
+  options.skip_flying = false;
+  World looking(options);
+  for (std::uint32_t slot = 0; slot < skipping.body_capacity(); ++slot)
+    looking.create_body(skipping.body(slot).definition);
+  for (int i = 0; i < 1000; ++i) {
+    skipping.step();
+    looking.step();
+  }
+  EXPECT_EQ(looking.counters().pairs_skipped_clear, 0u);
+  EXPECT_GE(skipping.counters().pairs_skipped_clear, 50000u);  // measured: 154615
+  EXPECT_GE(skipping.counters().impacts, 50u);
+  EXPECT_EQ(skipping.counters().impacts, looking.counters().impacts);
+  EXPECT_LE(test::largest_displacement(skipping, looking), 1e-11);  // measured: 0
+}
+
 }  // namespace
 }  // namespace tumble

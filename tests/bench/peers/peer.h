@@ -19,7 +19,7 @@ class Peer {
   virtual Motion motion(std::size_t i) const = 0;
 };
 
-/// Where a method differs from the engine's first.
+/// The scenes in which a method is another one than its engine's first: all, those with contacts, those without.
 enum class Scope { any, contact, flight };
 
 /// A way to run a scene.

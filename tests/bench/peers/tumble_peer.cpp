@@ -39,7 +39,7 @@ std::vector<Method> tumble_methods() {
        {std::pair("fast", Accuracy::fast), std::pair(kExactLevel, Accuracy::exact)}) {
     methods.push_back(
         tumble_method(name, std::string("accuracy ") + (level == Accuracy::fast ? "fast" : "exact"),
-                      Scope::contact, [level](Options& options) { set_accuracy(options, level); }));
+                      Scope::contact, [level = level](Options& options) { set_accuracy(options, level); }));
   }
   for (int i = 0; i < static_cast<int>(Solver::automatic); ++i) {
     const auto solver = static_cast<Solver>(i);

@@ -41,6 +41,7 @@ Json counters_json(const Counters& c) {
       {"impacts", c.impacts},
       {"impacts_capped", c.impacts_capped},
       {"impacts_micro", c.impacts_micro},
+      {"slides_ended", c.slides_ended},
       {"impacts_ended", c.impacts_ended},
       {"impacts_clamped", c.impacts_clamped},
       {"impacts_gained", c.impacts_gained},

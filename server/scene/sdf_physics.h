@@ -30,6 +30,7 @@ void for_each_option(OptionsType& options, Visit&& visit) {
   visit("restitution_threshold", options.restitution_threshold);
   visit("max_impacts", options.max_impacts);
   visit("impact_events", options.impact_events);
+  visit("slide_bodies", options.slide_bodies);
   visit("warm_start", options.warm_start);
   visit("rest_residual", options.rest.residual);
   visit("rest_speed", options.rest.speed);

@@ -20,6 +20,7 @@ struct Counters {
   std::uint64_t sweeps = 0;
   std::uint64_t solver_iterations = 0;  ///< Factorizations of the exact solver.
   std::uint64_t solver_fallbacks = 0;   ///< Islands without a trustworthy exact solution.
+  std::uint64_t slides_ended = 0;       ///< Within a step, at times of their own.
   std::uint64_t impacts = 0;            ///< Pairs that struck.
   std::uint64_t impacts_capped = 0;     ///< Bodies and islands whose impacts reached the bound of a step.
   std::uint64_t impacts_micro = 0;      ///< Impacts below the threshold: resting contact from then on.

@@ -8,6 +8,12 @@
 #include "world/world.h"
 
 namespace tumble {
+namespace {
+
+/// Of one island that end in one step at times of their own; what is left ends with the step.
+constexpr int kMostSlides = 4;
+
+}  // namespace
 
 bool World::is_finite(const Motion& motion) {
   return motion.x.allFinite() && motion.q.coeffs().allFinite() && motion.v.allFinite() &&
@@ -44,8 +50,10 @@ void World::advance_connected(std::size_t island, const StepContext& step) {
   // With events, impacts have their own times. The slides' solver bounces as taught, inside its own passes.
   if (!step.impact_events && options_.solver != Solver::course_impulse) bounce(problem);
   solve_problem(step);
+  StepContext rest = step;
+  for (int slides = 0; slides < kMostSlides && advance_slide(island, rest);) ++slides;
   if (try_rest(scratch_.residual)) return;
-  move_bodies(step);
+  move_bodies(rest);
 }
 
 void World::solve_problem(const StepContext& step) {
@@ -91,6 +99,7 @@ void World::build_problem(std::size_t island, const StepContext& step) {
 void World::begin_problem(double h) {
   scratch_.problem.clear();
   scratch_.problem.h = h;
+  scratch_.impulse_share = 1.0;
   scratch_.problem_slot.clear();
   scratch_.after_forces.clear();
   scratch_.contact_source.clear();
@@ -186,12 +195,12 @@ void World::store_impulses() {
   for (std::size_t i = 0; i < scratch_.problem.contacts.size(); ++i) {
     const PointContact& row = scratch_.problem.contacts[i];
     const Scratch::Source source = scratch_.contact_source[i];
-    const Vec3 impulse = in_world(row, row.lambda);
+    const Vec3 impulse = in_world(row, row.lambda) / scratch_.impulse_share;
     contacts_.all()[source.contact].impulse[source.point] =
         impulse.allFinite() ? impulse : Vec3(Vec3::Zero());
   }
   for (std::size_t i = 0; i < scratch_.problem.rows.size(); ++i) {
-    const double lambda = scratch_.problem.rows[i].lambda;
+    const double lambda = scratch_.problem.rows[i].lambda / scratch_.impulse_share;
     const Scratch::RowSource source = scratch_.row_source[i];
     ties_[source.tie].lambda[source.row] = std::isfinite(lambda) ? lambda : 0.0;
   }

@@ -48,6 +48,7 @@ std::string check_options(const Options& options) {
       {"push speed", options.bounds.push_speed, 0.0, 1e3},
       {"restitution threshold", options.restitution_threshold, 0.0, 1e3},
       {"max impacts", static_cast<double>(options.max_impacts), 1.0, 1e6},
+      {"slide bodies", static_cast<double>(options.slide_bodies), 0.0, 1e6},
       {"max sweeps", static_cast<double>(options.solver_settings.max_sweeps), 1.0, 1e6},
       {"tolerance", options.solver_settings.tolerance, 0.0, 1.0},
       {"exact bodies", static_cast<double>(options.solver_settings.exact_bodies), 0.0, 1e6},

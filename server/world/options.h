@@ -38,6 +38,9 @@ struct Options {
   /// Off: restitution acts at the start of the step, on velocities alone, and fast bodies are held by their contacts'
   /// bounds. Always off with the solver and the integrators of the course, whose motion is no parabola.
   bool impact_events = true;
+  /// Largest island, in movable bodies, whose slides end (stop, or turn into rolling) at their own time within a step; of
+  /// larger ones they end with the step, which is wrong by mu g h^2/2 at most. Two or three solutions each. 0: none.
+  int slide_bodies = 8;
   bool warm_start = true;  ///< Off: every solve starts from zero impulses.
 
   // Rest

@@ -172,6 +172,7 @@ class World {
     std::vector<std::vector<std::uint32_t>> contacts_of;  // by slot; filled at the first impact of a step
     bool contacts_indexed = false;
     double residual = 0.0;              // [m/s] of the problem's solution
+    double impulse_share = 1.0;         // of a whole step's impulses that the problem's are
     std::uint32_t problem_movable = 0;  // the first bodies of the problem; the rest are immovable partners
   };
   struct StepContext {
@@ -300,6 +301,15 @@ class World {
   void velocities_after_forces(std::uint32_t slot, double h, Vec3& v, Vec3& L) const;
   static bool is_finite(const Motion& motion);
   void contain(std::uint32_t slot, const Motion& last_good);
+
+  // slide_step.cpp: slides that end within the step.
+  bool may_end_slides(const StepContext& step) const;
+  void solve_part(std::size_t island, const StepContext& part);
+  std::optional<double> find_end_of_slide(std::size_t island, const StepContext& rest,
+                                          const std::vector<std::size_t>& ending, double guess);
+  /// If a contact of the solved island stops sliding within the rest of the step: moves the island there and solves for
+  /// what is then left of the step, which is the rest from now on. False: solved as before.
+  bool advance_slide(std::size_t island, StepContext& rest);
 
   // impact_step.cpp: the impacts of one step, in order of time.
   /// Whether the pair is left out of the smooth problem: it may strike, or is on its way apart.

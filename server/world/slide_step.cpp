@@ -1,6 +1,7 @@
 // Slides that end within a step. Friction jumps where a slide ends: an island that takes it for one mean force over the
 // whole step is wrong by terms of h^2. Here the step of the island is cut at that moment, found by solving for the part
-// of the step up to it: while all slide, velocities run linearly, so the second or third part is exact. World frame.
+// of the step up to it: while all slide, velocities run linearly, so the second or third part is exact. The arms of the
+// contacts stay what they are at the start of the step. World frame.
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -10,13 +11,15 @@
 namespace tumble {
 namespace {
 
-/// [m/s] slower slides end with the step: over 1/60 s they are 1e-10 m.
-constexpr double kSlow = 1e-8;
+/// [m/s] what is slower has stopped (solvers leave as much); slides up to ten times faster end with the step: 1e-9 m.
+constexpr double kStopped = 1e-8, kSlow = 1e-7;
 /// [m] or [m/step] by which a contact may be open or opening and still have been pressed all the way.
 constexpr double kPressed = 1e-6;
-/// Share of the speed at the start that counts as none, and of the friction limit that counts as all.
+/// Share of the friction limit that is not all of it.
 constexpr double kShare = 1e-6;
 constexpr int kMostTrials = 12;
+/// [m/s] of the parts: what slip is left at the end of a slide would be accepted by every step that follows.
+constexpr double kTolerance = 1e-12;
 
 Vec3 tangential(const Vec3& u, const PointContact& c) {
   return u - u.dot(c.n) * c.n;
@@ -45,7 +48,7 @@ bool ends_slide(const ContactProblem& problem, const PointContact& c) {
   const double start = std::sqrt(start_slide(problem, c).squaredNorm());
   if (start < kSlow) return false;
   const Vec3 end = tangential(relative_velocity(problem.bodies[c.a], problem.bodies[c.b], c.rA, c.rB), c);
-  return std::sqrt(end.squaredNorm()) < kShare * start && friction_share(c) < 1.0 - kShare;
+  return std::sqrt(end.squaredNorm()) < kStopped && friction_share(c) < 1.0 - kShare;
 }
 
 }  // namespace
@@ -60,9 +63,15 @@ bool World::may_end_slides(const StepContext& step) const {
 }
 
 void World::solve_part(std::size_t island, const StepContext& part) {
+  const std::vector<PointContact> at_start = scratch_.problem.contacts;
   build_problem(island, part);
   scratch_.impulse_share = part.h / options_.time_step;
-  for (PointContact& c : scratch_.problem.contacts) c.lambda *= scratch_.impulse_share;
+  for (std::size_t i = 0; i < at_start.size(); ++i) {
+    PointContact& c = scratch_.problem.contacts[i];
+    c.rA = at_start[i].rA;
+    c.rB = at_start[i].rB;
+    c.lambda *= scratch_.impulse_share;
+  }
   for (ScalarRow& row : scratch_.problem.rows) row.lambda *= scratch_.impulse_share;
   prepare(scratch_.problem, part.bounds);
   solve_problem(part);
@@ -82,7 +91,7 @@ std::optional<double> World::find_end_of_slide(std::size_t island, const StepCon
       const PointContact& c = problem.contacts[i];
       const double start = std::sqrt(start_slide(problem, c).squaredNorm());
       const double left = remaining_slide(problem, c);
-      all_slide = all_slide && left > kShare * start;
+      all_slide = all_slide && left > kStopped;
       if (left < start) end = std::min(end, part.h * start / (start - left));
     }
     if (!all_slide) continue;
@@ -106,6 +115,7 @@ bool World::advance_slide(std::size_t island, StepContext& rest) {
     share = std::min(share, friction_share(problem.contacts[i]));
   }
   if (ending.empty()) return false;
+  rest.solver_settings.tolerance = std::min(rest.solver_settings.tolerance, kTolerance);
   const std::optional<double> end = find_end_of_slide(island, rest, ending, 0.5 * share * rest.h);
   if (!end) {
     solve_part(island, rest);
@@ -117,11 +127,6 @@ bool World::advance_slide(std::size_t island, StepContext& rest) {
   move_bodies(part);
   rest.h -= *end;
   rest.begin += *end;
-  const Islands& islands = scratch_.islands;
-  for (std::uint32_t i = islands.edge_begin[island]; i < islands.edge_begin[island + 1]; ++i) {
-    const std::uint32_t source = scratch_.edge_source[islands.edges[i]];
-    if (source < contacts_.all().size()) update_contact(source, rest);
-  }
   solve_part(island, rest);
   return true;
 }

@@ -70,6 +70,7 @@ void World::solve_part(std::size_t island, const StepContext& part) {
     PointContact& c = scratch_.problem.contacts[i];
     c.rA = at_start[i].rA;
     c.rB = at_start[i].rB;
+    c.separation *= scratch_.impulse_share;  // it may close at the same speed as in the whole step
     c.lambda *= scratch_.impulse_share;
   }
   for (ScalarRow& row : scratch_.problem.rows) row.lambda *= scratch_.impulse_share;

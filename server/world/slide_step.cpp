@@ -18,7 +18,7 @@ constexpr double kPressed = 1e-6;
 /// Share of the friction limit that is not all of it.
 constexpr double kShare = 1e-6;
 constexpr int kMostTrials = 12;
-/// [m/s] of the parts: what slip is left at the end of a slide would be accepted by every step that follows.
+/// [m/s] of a whole step's impulses: what is wrong with the forces would be accepted by every step that follows.
 constexpr double kTolerance = 1e-12;
 
 Vec3 tangential(const Vec3& u, const PointContact& c) {
@@ -75,7 +75,10 @@ void World::solve_part(std::size_t island, const StepContext& part) {
   }
   for (ScalarRow& row : scratch_.problem.rows) row.lambda *= scratch_.impulse_share;
   prepare(scratch_.problem, part.bounds);
-  solve_problem(part);
+  StepContext sharp = part;
+  sharp.solver_settings.tolerance =
+      std::min(part.solver_settings.tolerance, kTolerance * scratch_.impulse_share);
+  solve_problem(sharp);
 }
 
 /// Leaves the island solved up to that moment. None, and solved for anything: it was not found before the end.
@@ -116,19 +119,24 @@ bool World::advance_slide(std::size_t island, StepContext& rest) {
     share = std::min(share, friction_share(problem.contacts[i]));
   }
   if (ending.empty()) return false;
-  rest.solver_settings.tolerance = std::min(rest.solver_settings.tolerance, kTolerance);
   const std::optional<double> end = find_end_of_slide(island, rest, ending, 0.5 * share * rest.h);
   if (!end) {
     solve_part(island, rest);
     return false;
   }
   ++counters_.slides_ended;
+  const std::vector<PointContact> first = problem.contacts;
   StepContext part = rest;
   part.h = *end;
   move_bodies(part);
   rest.h -= *end;
   rest.begin += *end;
   solve_part(island, rest);
+  if (part.h > rest.h) {  // the longer part knows the pressure with more digits
+    for (std::size_t i = 0; i < first.size(); ++i)
+      scratch_.problem.contacts[i].lambda.x() = rest.h / part.h * first[i].lambda.x();
+    store_impulses();
+  }
   return true;
 }
 

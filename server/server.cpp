@@ -190,6 +190,7 @@ void Server::step() {
   simulation_.step(stage_done_);
   meter_.end_step(clock_.now_ns());
   ++steps_done_;
+  log_contained();
   record([&](Recorder& r) {
     r.end_step(simulation_, clock_.wall_us());
     r.flush();
@@ -199,6 +200,18 @@ void Server::step() {
     changed_ = true;
     hasten_heartbeat();
   }
+}
+
+void Server::log_contained() {
+  if (world().contained().empty() || clock_.now_ns() < next_contained_log_) return;
+  const BodyId id = world().contained().front();
+  spdlog::warn(
+      "body '{}' (id {}) would have become non-finite in step {}: held at its last good state, at rest; so "
+      "often "
+      "has the world held one: {}",
+      world().body(id.index).definition.name, id.index, world().step_count(),
+      world().counters().non_finite_contained);
+  next_contained_log_ = clock_.now_ns() + period_ns(1.0);
 }
 
 void Server::publish_when_due() {

@@ -72,6 +72,7 @@ class Server {
   void send_stats();
   void notice_heartbeat(Bytes bytes);
   void log_damaged();
+  void log_contained();
   void wait();
 
   template <typename Message>
@@ -109,7 +110,8 @@ class Server {
   std::function<void(const StepReport&)> observer_;
   std::uint64_t damaged_logged_ = 0;
   std::string damaged_sender_;
-  std::int64_t next_damage_log_ = 0;  // now_ns
+  std::int64_t next_damage_log_ = 0;     // now_ns
+  std::int64_t next_contained_log_ = 0;  // now_ns
   std::string host_;
   std::map<std::string, std::int64_t>
       others_;  // "host pid" of other servers of this world -> when warned [now_ns]

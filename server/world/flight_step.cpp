@@ -188,10 +188,7 @@ void World::descend(std::uint32_t slot, std::uint64_t now) {
   body.due = now + kNearest;
   --aloft_count_;
   active_stale_ = true;
-  for (const std::uint32_t index : bodies_[slot].geometries) {
-    broad_phase_.remove(index);
-    add_box(index);
-  }
+  renew_boxes(slot);
 }
 
 void World::land(std::uint32_t slot) {

@@ -16,8 +16,11 @@ constexpr int kMostSlides = 4;
 }  // namespace
 
 bool World::is_finite(const Motion& motion) {
-  return motion.x.allFinite() && motion.q.coeffs().allFinite() && motion.v.allFinite() &&
-         motion.L.allFinite() && motion.w.allFinite();
+  constexpr double kLargest =
+      1e100;  // [SI units] beyond it, products of three of what is computed next overflow
+  const auto within = [](const Vec3& v) { return v.allFinite() && v.cwiseAbs().maxCoeff() <= kLargest; };
+  return within(motion.x) && within(motion.v) && within(motion.L) && within(motion.w) &&
+         motion.q.coeffs().allFinite();
 }
 
 Vec3 World::acceleration_of(std::uint32_t slot) const {
@@ -331,14 +334,18 @@ void World::move_body(std::uint32_t slot, const VelocityPath& path, const Vec3& 
 }
 
 void World::contain(std::uint32_t slot, const Motion& last_good) {
+  hold(slot, last_good);
+  contained_.push_back(id(slot));
+  ++counters_.non_finite_contained;
+}
+
+void World::hold(std::uint32_t slot, const Motion& at) {
   land(slot);
   Motion& motion = motions_[slot];
-  motion = last_good;
+  motion = at;
   motion.v.setZero();
   motion.L.setZero();
   motion.w.setZero();
-  contained_.push_back(id(slot));
-  ++counters_.non_finite_contained;
 }
 
 }  // namespace tumble

@@ -73,7 +73,7 @@ void World::step(const std::function<void(Stage)>& stage_done) {
   stage_done(Stage::report);
 }
 
-void World::apply_pushes(const StepContext&) {
+void World::apply_pushes(const StepContext& step) {
   for (const std::uint32_t slot : scratch_.loaded) {
     scratch_.load[slot] = Load{};
     pushed_[slot] = 0;
@@ -99,6 +99,22 @@ void World::apply_pushes(const StepContext&) {
     active.steps_left -= share;
   }
   std::erase_if(pushes_, [](const ActivePush& active) { return active.steps_left <= 0.0; });
+  contain_overloaded(step);
+}
+
+void World::contain_overloaded(const StepContext& step) {
+  contained_.clear();
+  scratch_.held.clear();
+  for (const std::uint32_t slot : scratch_.loaded) {
+    Motion next = motions_[slot];
+    velocities_after_forces(slot, step.h, next.v, next.L);
+    next.x += step.h * next.v;
+    next.w = angular_velocity(masses_[slot], next.q, next.L);
+    if (is_finite(next)) continue;
+    scratch_.load[slot] = Load{};
+    scratch_.held.emplace_back(slot, motions_[slot]);
+    contain(slot, motions_[slot]);
+  }
 }
 
 Pose World::geometry_pose(const Geometry& geometry) const {
@@ -358,7 +374,6 @@ void World::build_islands(const StepContext& step) {
 }
 
 void World::advance_islands(const StepContext& whole_step) {
-  contained_.clear();
   step_residual_ = 0.0;
   step_push_work_ = 0.0;
   StepContext step = whole_step;
@@ -373,6 +388,7 @@ void World::advance_islands(const StepContext& whole_step) {
     }
   }
   if (step.ways_only) advance_impacts(step);
+  for (const auto& [slot, motion] : scratch_.held) hold(slot, motion);
   for (const std::uint32_t slot : kinematic_) move_kinematic(motions_[slot], step.h);
   counters_.bodies_stepped += awake_.size();
   counters_.bodies_skipped_flying += aloft_count_;

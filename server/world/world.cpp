@@ -184,6 +184,13 @@ void World::add_box(std::uint32_t index) {
                    bodies_[geometry.body].type != BodyType::fixed);
 }
 
+void World::renew_boxes(std::uint32_t slot) {
+  for (const std::uint32_t index : bodies_[slot].geometries) {
+    broad_phase_.remove(index);
+    add_box(index);
+  }
+}
+
 bool World::destroy_body(BodyId id) {
   if (!is_valid(id)) return false;
   const std::uint32_t slot = id.index;
@@ -352,16 +359,37 @@ void World::set_motion(BodyId id, const Pose& X_WL, const Vec3& v_WB, const Vec3
   motion.w = w_WB;
   motion.L = angular_momentum(masses_[slot], motion.q, w_WB);
   // Its pairs are forgotten: a teleport has no past to warm-start from.
-  for (const std::uint32_t index : bodies_[slot].geometries) {
-    broad_phase_.remove(index);
-    add_box(index);
-  }
+  renew_boxes(slot);
   active_stale_ = true;
 }
 
 void World::wake(BodyId id) {
   check_live(id, "body");
   wake_slot(id.index);
+}
+
+void World::set_time_step(double time_step) {
+  Options options = options_;
+  options.time_step = time_step;
+  if (const std::string problem = check_options(options); !problem.empty()) refuse(problem);
+  const double ratio = time_step / options_.time_step;
+  for (std::uint32_t slot = 0; slot < body_capacity(); ++slot) {
+    if (bodies_[slot].exists) land(slot);  // flights count in steps of one length
+  }
+  time_before_ = time();
+  steps_before_ = step_count_;
+  options_ = options;
+  for (ActivePush& active : pushes_) active.steps_left /= ratio;
+  for (Contact& contact : contacts_.all()) {
+    for (Vec3& impulse : contact.impulse) impulse *= ratio;
+  }
+  for (Tie& tie : ties_) {
+    for (double& lambda : tie.lambda) lambda *= ratio;
+  }
+  // Boxes hold what moves until the end of the next step.
+  for (std::uint32_t slot = 0; slot < body_capacity(); ++slot) {
+    if (bodies_[slot].exists && bodies_[slot].type != BodyType::fixed) renew_boxes(slot);
+  }
 }
 
 void World::wake_slot(std::uint32_t slot) {

@@ -66,6 +66,8 @@ class World {
   /// Teleports: pose of the link frame, velocities of the centre of mass.
   void set_motion(BodyId id, const Pose& X_WL, const Vec3& v_WB, const Vec3& w_WB);
   void wake(BodyId id);
+  /// Of all steps from here on [s]; throws where Options would. Pushes keep their time, contacts their forces.
+  void set_time_step(double time_step);
 
   void step();
   /// The same, and calls `stage_done(stage)` at the end of every stage.
@@ -73,7 +75,9 @@ class World {
 
   // Reading. Bodies are addressed by slot (0 .. body_capacity()) where all are visited.
   std::uint64_t step_count() const { return step_count_; }
-  double time() const { return static_cast<double>(step_count_) * options_.time_step; }
+  double time() const {
+    return time_before_ + static_cast<double>(step_count_ - steps_before_) * options_.time_step;
+  }
   const Options& options() const { return options_; }
   std::uint32_t body_capacity() const { return static_cast<std::uint32_t>(bodies_.size()); }
   std::uint32_t body_count() const { return body_count_; }
@@ -171,8 +175,9 @@ class World {
     std::vector<std::uint32_t> flying;                    // contacts that may strike in this step
     std::vector<std::vector<std::uint32_t>> contacts_of;  // by slot; filled at the first impact of a step
     bool contacts_indexed = false;
-    double residual = 0.0;              // [m/s] of the problem's solution
-    double impulse_share = 1.0;         // of a whole step's impulses that the problem's are
+    std::vector<std::pair<std::uint32_t, Motion>> held;  // slots that pushes would carry beyond all numbers
+    double residual = 0.0;                               // [m/s] of the problem's solution
+    double impulse_share = 1.0;                          // of a whole step's impulses that the problem's are
     std::uint32_t problem_movable = 0;  // the first bodies of the problem; the rest are immovable partners
   };
   struct StepContext {
@@ -213,6 +218,8 @@ class World {
 
   // step.cpp: the stages, in order.
   void apply_pushes(const StepContext& step);
+  /// Takes the load off bodies that it would make non-finite, so that they don't take others with them.
+  void contain_overloaded(const StepContext& step);
   void update_pairs();
   /// Replaces the pairs with a surface by pairs with those of its triangles that meet the other's fat box.
   void split_surface_pairs();
@@ -235,6 +242,8 @@ class World {
 
   /// Puts the geometry, or puts it back, into the broad phase at its present place.
   void add_box(std::uint32_t index);
+  /// The same of every geometry of a body.
+  void renew_boxes(std::uint32_t slot);
   /// Where the geometry, or a contact of it, can be while the body turns through a step of h.
   Aabb contact_bounds(const Geometry& geometry, double h) const;
   Contact make_contact(GeometryPair pair) const;
@@ -301,6 +310,7 @@ class World {
   void velocities_after_forces(std::uint32_t slot, double h, Vec3& v, Vec3& L) const;
   static bool is_finite(const Motion& motion);
   void contain(std::uint32_t slot, const Motion& last_good);
+  void hold(std::uint32_t slot, const Motion& at);
 
   // slide_step.cpp: slides that end within the step.
   bool may_end_slides(const StepContext& step) const;
@@ -345,6 +355,8 @@ class World {
 
   Options options_;
   std::uint64_t step_count_ = 0;
+  double time_before_ = 0.0;        // [s] until the step got its present length,
+  std::uint64_t steps_before_ = 0;  // and the steps until then
   std::uint64_t model_epoch_ = 0;
   std::uint32_t body_count_ = 0, dynamic_count_ = 0;
 

@@ -74,7 +74,7 @@ TEST(Impact, ElasticGridKeepsItsEnergy) {  // 64 of the 216 balls, 1 of the 10 s
 
 TEST(Impact, AGasKeepsItsEnergyAndNobodyOverlaps) {  // 125 of the 512 balls, 1 of the 10 s
   for (const double h : kImpactSteps) {
-    World world = gas(5, h);
+    World world = gas(5, with_step(h));
     const EnergyError error = measure_energy(world, 1.0);
     EXPECT_LE(error.drift, 1e-13) << h;
     EXPECT_LE(error.overlap, 1e-12) << h;
@@ -114,7 +114,7 @@ TEST(Impact, InACradleAsManyLeaveAsArrive) {
   for (const double h : kImpactSteps) {
     for (const double gap : {0.0, 1e-9}) {
       for (int arriving = 1; arriving <= 4; ++arriving) {
-        World world = cradle(arriving, gap, 1.0, h);
+        World world = cradle(arriving, gap, 1.0, with_step(h));
         run(world, static_cast<int>(std::lround(1.0 / h)));
         for (std::uint32_t i = 0; i < 5; ++i) {
           const double expected = i < 5u - static_cast<unsigned>(arriving) ? 0.0 : 1.0;
@@ -130,7 +130,7 @@ TEST(Impact, ALossyCradleHandsOnWhatOneImpactAfterTheOtherWould) {
   // Balls of equal mass exchange (1 + e)/2 of the approach; e = 0.9, one in: 0.95^4 leaves at the end.
   for (const double h : kImpactSteps) {
     for (const double gap : {0.0, 1e-9}) {
-      World world = cradle(1, gap, 0.9, h);
+      World world = cradle(1, gap, 0.9, with_step(h));
       run(world, static_cast<int>(std::lround(1.0 / h)));
       EXPECT_NEAR(world.motion(4).v.x(), std::pow(0.95, 4), 1e-13);
       EXPECT_NEAR(world.compute_conserved().momentum.x(), 1.0, 1e-14);

@@ -22,7 +22,7 @@ void step_elastic_666(benchmark::State& state) {
 BENCHMARK(step_elastic_666)->Iterations(2000)->Unit(benchmark::kMicrosecond);
 
 void step_gas(benchmark::State& state) {
-  step(state, gas(8, 1.0 / 60.0));
+  step(state, gas(8, with_step(1.0 / 60.0)));
 }
 BENCHMARK(step_gas)->Iterations(120)->Unit(benchmark::kMicrosecond);
 

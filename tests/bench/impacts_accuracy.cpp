@@ -71,7 +71,7 @@ void run_cradle(double gap, double h) {
   double worst = 0.0, microseconds = 0.0;
   Counters counters;
   for (int arriving = 1; arriving <= 4; ++arriving) {
-    World world = cradle(arriving, gap, 1.0, h);
+    World world = cradle(arriving, gap, 1.0, with_step(h));
     microseconds = time_steps(world, 1.0, [] {});
     for (std::uint32_t i = 0; i < 5; ++i) {
       const double exact = i < 5u - static_cast<unsigned>(arriving) ? 0.0 : 1.0;
@@ -105,7 +105,7 @@ int main(int argc, char** argv) {
     run_energy("bouncing, 49 balls", bouncing(7, h), std::max(1.5, 20.0 * share), "energy^2 [J^2]", 1e-12);
     run_energy("elastic 666, 216 balls", elastic_666(6, h), std::max(0.6, 10.0 * share), "energy^2 [J^2]",
                1e-6);
-    run_energy("gas, 512 balls", gas(8, h), std::max(0.2, 10.0 * share), "energy drift", 1e-13);
+    run_energy("gas, 512 balls", gas(8, with_step(h)), std::max(0.2, 10.0 * share), "energy drift", 1e-13);
     run_energy("tumbling box", tumbling_box(h), std::max(1.0, 10.0 * share), "energy drift", 1e-12);
     run_cradle(0.0, h);
     run_cradle(1e-9, h);

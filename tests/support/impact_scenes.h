@@ -63,9 +63,9 @@ inline World elastic_666(int n, double time_step) {
 }
 
 /// n^3 balls of 0.08 m and 1 kg in a cube of six planes, 0.5 m apart, up to 3 m/s along each axis, C_r = 1.
-inline World gas(int n, double time_step) {
+inline World gas(int n, const Options& options) {
   const Material elastic{.friction = 0.0, .restitution = 1.0};
-  World world(with_step(time_step));
+  World world(options);
   const double half = 0.25 * n;
   for (int k = 0; k < 6; ++k) {
     BodyDefinition wall = ground(elastic);
@@ -98,9 +98,10 @@ inline World tumbling_box(double time_step) {
 }
 
 /// Five balls of 1 m and 1 kg in a row, `gap` apart; the first `arriving` come from half a metre with 1 m/s.
-inline World cradle(int arriving, double gap, double restitution, double time_step) {
+inline World cradle(int arriving, double gap, double restitution, Options options) {
   const Material material{.friction = 0.0, .restitution = restitution};
-  World world(weightless(time_step));
+  options.gravity.setZero();
+  World world(options);
   for (int i = 0; i < 5; ++i) {
     const double x = i * (1.0 + gap) - (i < arriving ? 0.5 : 0.0);
     BodyDefinition ball = body_of_mass("ball" + std::to_string(i), Sphere{0.5}, 1.0, Vec3(x, 0, 0), material);

@@ -425,24 +425,59 @@ TEST_F(TumbleServer, RunsInRealTimeAndStopsAfterItsSteps) {
   EXPECT_EQ(server.pacer().overruns(), 0);
 }
 
+/// What the server logs while this lives.
+class CapturedLog {
+ public:
+  CapturedLog() : kept_(spdlog::default_logger()) {
+    spdlog::set_default_logger(
+        std::make_shared<spdlog::logger>("test", std::make_shared<spdlog::sinks::ostream_sink_mt>(log_)));
+  }
+  ~CapturedLog() { spdlog::set_default_logger(kept_); }
+  CapturedLog(const CapturedLog&) = delete;
+  CapturedLog& operator=(const CapturedLog&) = delete;
+  std::string text() const { return log_.str(); }
+
+ private:
+  std::ostringstream log_;
+  std::shared_ptr<spdlog::logger> kept_;
+};
+
 TEST_F(TumbleServer, WarnsOfASecondServerByName) {
-  std::ostringstream log;
-  const auto kept = spdlog::default_logger();
-  spdlog::set_default_logger(
-      std::make_shared<spdlog::logger>("test", std::make_shared<spdlog::sinks::ostream_sink_mt>(log)));
+  const CapturedLog log;
   tick(256);  // hears itself: says nothing
-  EXPECT_EQ(log.str(), "");
+  EXPECT_EQ(log.text(), "");
   heartbeat_t other{};
   other.session = 12345;
   other.host = "elsewhere";
   other.pid = 4711;
   for (int i = 0; i < 5; ++i) send_to("T_HEARTBEAT", other);
   tick();
-  spdlog::set_default_logger(kept);
-  const std::string text = log.str();
+  const std::string text = log.text();
   EXPECT_NE(text.find("elsewhere"), std::string::npos);
   EXPECT_NE(text.find("4711"), std::string::npos);
   EXPECT_EQ(text.find("4711"), text.rfind("4711")) << "once, not at every heartbeat";
+}
+
+TEST_F(TumbleServer, HoldsReportsAndNamesABodyThatWouldBecomeNonFinite) {
+  control_t spawn = make_spawn("speck");
+  spawn.mass = 1e-100;
+  ASSERT_EQ(ask(spawn).status, Status::applied);
+  const double y = server_->world().motion(1).x.y();
+  const CapturedLog log;
+  force_command_t push = make_force(0.0, 0.5);
+  push.body = 1;
+  push.force[1] = 1e15;
+  ASSERT_EQ(ask(push).status, Status::applied);
+  tick(256);
+  EXPECT_EQ(stats_.non_finite_contained, 128);
+  EXPECT_EQ(server_->world().motion(1).x.y(), y);
+  EXPECT_NE(states_.back().flags.at(1) & state_t::FLAG_CONTAINED, 0);
+  const std::string text = log.text();
+  EXPECT_NE(text.find("'speck'"), std::string::npos);
+  EXPECT_EQ(text.find("'speck'"), text.rfind("'speck'")) << "once a second, not at every step";
+  ASSERT_EQ(ask(make_force(kMass, 1.0)).status, Status::applied);
+  tick(256);
+  EXPECT_NEAR(momentum(), kMass, 1e-9) << "the rest of the world goes on";
 }
 
 }  // namespace

@@ -194,7 +194,7 @@ TEST(ImpactStep, SwitchedOffRestitutionActsAtTheStartOfAStep) {
 }
 
 TEST(ImpactStep, ACopyGoesOnWithTheSameBits) {
-  World world = gas(3, 1.0 / 60.0);
+  World world = gas(3, with_step(1.0 / 60.0));
   run(world, 20);
   World copy = world;
   run(world, 20);

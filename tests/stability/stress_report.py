@@ -1,0 +1,144 @@
+#!/usr/bin/env python3
+"""Makes README.md and stress.png of what the program `stress` printed.
+
+    stress_report.py STRESS CSV OUT [READ_ME_HEAD...]   CSV: the program's output; OUT: folder of README.md and stress.png
+
+The table has a row for each case and a column for each solver; a cell says for each step whether it holds at every level
+of accuracy. The picture has a column for each way and shows how far from its bound the worst check of a case is.
+"""
+import collections
+import csv
+import math
+import pathlib
+import platform
+import re
+import subprocess
+import sys
+
+SOLVERS = ["automatic", "exact", "soft_step", "pgs", "nncg", "course_impulse"]
+STEPS = ["1/60", "1/240", "1/1000"]
+LEVELS = ["fast", "balanced", "exact"]
+
+
+def read(path):
+    """{case: {(solver, step, accuracy): [row]}}, cases in order."""
+    cases = {}
+    with open(path, newline="", encoding="utf-8") as file:
+        for row in csv.DictReader(file):
+            way = row["solver"], row["step"], row["accuracy"]
+            cases.setdefault(row["case"], collections.defaultdict(list))[way].append(row)
+    return cases
+
+
+def holds(rows):
+    return all(row["holds"] == "1" for row in rows)
+
+
+def excess(row):
+    """How many bounds wide a check misses (> 1) or holds (<= 1)."""
+    value, bound = abs(float(row["value"])), float(row["bound"])
+    if row["holds"] == "1":
+        return value / bound if bound > 0.0 else 0.0
+    return value / bound if bound > 0.0 else math.inf
+
+
+def worst(rows):
+    return max(rows, key=excess)
+
+
+def cell(ways, solver):
+    """One character a step: all levels hold, some do, none does, nothing was run."""
+    marks = ""
+    for step in STEPS:
+        levels = [ways[solver, step, level] for level in LEVELS if ways[solver, step, level]]
+        held = sum(holds(rows) for rows in levels)
+        marks += "·" if not levels else "●" if held == len(levels) else "◐" if held else "○"
+    promised = any(row["promised"] == "1" for way, rows in ways.items() if way[0] == solver for row in rows)
+    return f"**{marks}**" if promised else marks
+
+
+def failures(cases):
+    """Lines on what is promised and not held."""
+    for name, ways in cases.items():
+        for way, rows in ways.items():
+            if rows[0]["promised"] == "1" and not holds(rows):
+                row = worst(rows)
+                yield f"| {name} | {' '.join(way)} | {row['check']} | {float(row['value']):.2g} | {float(row['bound']):.2g} |"
+
+
+def misses(cases, solver):
+    """What a way that promises nothing does at the default step and level, worst check a case."""
+    for name, ways in cases.items():
+        rows = ways[solver, "1/240", "balanced"]
+        if rows and not holds(rows) and rows[0]["promised"] == "0":
+            row = worst(rows)
+            yield f"{name} ({row['check']}: {float(row['value']):.2g})"
+
+
+def draw(cases, path):
+    """False without matplotlib."""
+    try:
+        import matplotlib
+        matplotlib.use("Agg")
+        import matplotlib.pyplot as plot
+        from matplotlib.colors import TwoSlopeNorm
+    except ImportError:
+        return False
+    ways = [(solver, step, level) for solver in SOLVERS for step in STEPS for level in LEVELS]
+    values = []
+    for rows_of in cases.values():
+        line = []
+        for way in ways:
+            rows = rows_of[way]
+            ratio = excess(worst(rows)) if rows else math.nan
+            line.append(math.nan if math.isnan(ratio) else min(6.0, max(-6.0, math.log10(max(ratio, 1e-6)))))
+        values.append(line)
+    figure, axes = plot.subplots(figsize=(15, 0.21 * len(cases) + 2), layout="constrained")
+    image = axes.imshow(values, aspect="auto", cmap="RdYlGn_r", norm=TwoSlopeNorm(0.0, -6.0, 6.0), interpolation="none")
+    axes.set_yticks(range(len(cases)), cases, fontsize=8)
+    axes.set_xticks(range(len(ways)), [f"{step} {level}" for _, step, level in ways], rotation=90, fontsize=6)
+    for i, solver in enumerate(SOLVERS):
+        axes.text(9 * i + 4, -1.2, solver, ha="center", fontsize=9)
+        axes.axvline(9 * i - 0.5, color="black", linewidth=1)
+    figure.colorbar(image, label="log10(worst value / its bound): green holds, red does not; white: not run", shrink=0.6)
+    figure.savefig(path, dpi=110)
+    return True
+
+
+def first_line(*command):
+    return subprocess.run(command, check=True, capture_output=True, text=True).stdout.splitlines()[0]
+
+
+def main():
+    program, table, out = map(pathlib.Path, sys.argv[1:4])
+    arguments = sys.argv[4:]
+    cases = read(table)
+    listing = subprocess.run([program, "--list"], check=True, capture_output=True, text=True).stdout
+    claims = dict(line.split("\t") for line in listing.splitlines())
+    model = re.search(r"model name\s*:\s*(.*)", pathlib.Path("/proc/cpuinfo").read_text(encoding="utf-8"))
+    seconds = sum(float(rows[0]["cpu_s"]) for ways in cases.values() for rows in ways.values() if rows)
+    trials = sum(1 for ways in cases.values() for rows in ways.values() if rows)
+    broken = list(failures(cases))
+    lines = ["# Stress", "",
+             f"Written by `./run stress{''.join(' ' + argument for argument in arguments)}`: {len(cases)} cases, {trials} "
+             f"trials, {seconds:.0f} s of processor time on {model.group(1) if model else platform.machine()}, commit "
+             f"{first_line('git', '-C', pathlib.Path(__file__).parent, 'describe', '--always', '--dirty')}.",
+             "", "A cell has a mark for each step of 1/60, 1/240 and 1/1000 s: ● holds at every level of accuracy, ◐ at some, "
+             "○ at none, · not run. **Bold**: promised, at least at some steps.", "",
+             "| case | what must hold | " + " | ".join(SOLVERS) + " |", "|---" * (2 + len(SOLVERS)) + "|"]
+    for name, ways in cases.items():
+        lines.append(f"| {name} | {claims.get(name, '')} | " + " | ".join(cell(ways, s) for s in SOLVERS) + " |")
+    lines += ["", "## Promised and not held", ""]
+    lines += ["| case | way | worst check | value | bound |", "|---|---|---|---|---|", *broken] if broken else ["Nothing."]
+    lines += ["", "## Not promised, and not held at 1/240 s, balanced", ""]
+    for solver in SOLVERS:
+        missed = list(misses(cases, solver))
+        lines.append(f"* {solver}: {', '.join(missed) if missed else 'nothing'}")
+    if draw(cases, out / "stress.png"):
+        lines += ["", "![how far from its bound every case is, every way](stress.png)"]
+    (out / "README.md").write_text("\n".join(lines) + "\n", encoding="utf-8")
+    print("\n".join(lines))
+
+
+if __name__ == "__main__":
+    main()

@@ -11,9 +11,9 @@
 namespace tumble::stability {
 
 struct Case {
-  std::string name;   ///< One word: what --case takes.
-  std::string claim;  ///< What must hold.
-  Claimants claimants;
+  std::string name;                 ///< One word: what --case takes.
+  std::string claim;                ///< What must hold.
+  Claimants claimants;              ///< Nobody: what is wanted and not held yet by any way.
   std::function<void(Trial&)> act;  ///< Builds, runs and expects.
   bool own_steps = false;  ///< Goes through steps of its own: of the ways only those of 1/240 s count.
   bool costly = false;     ///< The test program leaves the other ways than the default to `./run stress`.

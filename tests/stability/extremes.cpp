@@ -104,12 +104,11 @@ void feather_and_anvil(Trial& trial) {
   trial.expect("drift [m]", trial.drift(), 1e-6);
 }
 
-/// Scaled cubes fall, stand and rest like those of a metre.
+/// Scaled cubes stand and rest like those of a metre.
 void sizes(Trial& trial) {
   for (const double size : {1e-3, 1e3}) {
-    const double volume = size * size * size;
-    const Column cubes{.count = 5, .size = size, .mass = [volume](int) { return 1000.0 * volume; }};
-    trial.begin(column(cubes, trial.options()));
+    const std::vector<double> masses(5, 1000.0 * size * size * size);
+    trial.begin(cube_stack(trial.options(), masses, {}, {.size = size}));
     trial.run(trial.lasting(3.0, 20.0));
     trial.expect("drift / size", trial.drift() / size, 1e-6);
     trial.expect_true("at rest", trial.world().report().bodies_awake == 0);
@@ -117,8 +116,7 @@ void sizes(Trial& trial) {
 }
 
 void tiny_wall(Trial& trial) {
-  trial.begin(wall_pyramid({.base = 6, .size = 0.01, .density = 1000.0, .top_density = 1000.0, .gap = 1e-4},
-                           trial.options()));
+  trial.begin(cube_pyramid(trial.options(), 6, {.height = 1e-4, .gap = 1e-4}, {.size = 0.01}));
   trial.run(trial.lasting(3.0, 20.0));
   trial.expect("drift / size", trial.drift() / 0.01, 0.07);
   trial.expect("speed at the end [m/s]", trial.fastest_now(), 1e-6);
@@ -126,10 +124,12 @@ void tiny_wall(Trial& trial) {
 
 /// 1e7 m away a double has 2e-9 m.
 void far_away(Trial& trial) {
-  trial.begin(column({.count = 5, .foot = Vec3(1e7, -1e7, 1e7)}, trial.options()));
+  const std::vector<double> masses(5, 1.0);
+  trial.begin(cube_stack(trial.options(), masses, {}, {.foot = Vec3(1e7, -1e7, 1e7)}));
   trial.run(trial.lasting(10.0, 60.0));
   trial.expect("drift [m]", trial.drift(), 1e-6);
-  trial.begin(wall_pyramid({.base = 5, .gap = 0.01, .foot = Vec3(-1e7, 1e7, 1e7)}, trial.options()));
+  trial.begin(
+      cube_pyramid(trial.options(), 5, {.height = 0.01, .gap = 0.01}, {.foot = Vec3(-1e7, 1e7, 1e7)}));
   trial.run(trial.lasting(5.0, 60.0));
   trial.expect("drift of the wall [m]", trial.drift(), 0.06);
   trial.expect("speed at the end [m/s]", trial.fastest_now(), 1e-6);
@@ -140,7 +140,7 @@ void steps(Trial& trial) {
   for (const double step : {1e-5, 1e-4, 1e-3, 1.0 / 60.0, 1.0 / 30.0, 0.1}) {
     Options options = trial.options();
     options.time_step = step;
-    trial.begin(column({.count = 5, .gap = 1e-3}, options));
+    trial.begin(cube_stack(options, std::vector<double>(5, 1.0), {.height = 1e-3, .gap = 1e-3}));
     trial.run(step < 1e-4 ? trial.lasting(0.2, 2.0) : trial.lasting(3.0, 60.0));
     trial.expect("drift at " + describe_step(step) + " [m]", trial.drift(), 0.006);
     trial.expect("penetration at " + describe_step(step) + " [m]", trial.deepest_now(), 1e-6);
@@ -149,7 +149,7 @@ void steps(Trial& trial) {
 
 /// A step of another length every time, from 10 us to 0.1 s: a column stands, a stone flies its parabola.
 void changing_steps(Trial& trial) {
-  World world = column({.count = 5, .gap = 1e-3}, trial.options());
+  World world = cube_stack(trial.options(), std::vector<double>(5, 1.0), {.height = 1e-3, .gap = 1e-3});
   BodyDefinition stone = body("stone", Box{Vec3(0.3, 0.2, 0.1)}, Vec3(50, 0, 1000));
   stone.v_WB = Vec3(1, 2, 30);
   stone.w_WB = Vec3(1, 5, 0.1);
@@ -174,12 +174,14 @@ void changing_steps(Trial& trial) {
 std::vector<Case> extreme_cases() {
   return {
       {"rod", "A rod of 1:1000 at 1000 rad/s keeps energy and angular momentum", everyone(), spinning_rod},
-      {"rod_on_floor", "The same rod falls on the floor: energy never rises by 1e-6", sturdy(), rod_on_floor},
+      {"rod_on_floor", "The same rod falls on the floor: energy never rises by 1e-6", precise(1.0 / 240.0),
+       rod_on_floor},
       {"plate", "Plates of 1e-6 m lie still, and come to lie from a fall", precise(), thin_plate},
       {"inertia", "Moments at the limit of the triangle inequality: free spin keeps energy and momentum",
        everyone(), flat_inertia},
       {"masses", "Balls of 1e-6 to 1e9 kg collide: momentum kept, no energy gained", engines(), masses},
-      {"feather", "1e-6 kg on 1e9 kg, and under 1 kg: drift <= 1e-6 m", precise(), feather_and_anvil},
+      {"feather", "1e-6 kg on 1e9 kg, and under 1 kg: drift <= 1e-6 m", precise(1.0 / 240.0),
+       feather_and_anvil},
       {"sizes", "Columns of cubes of 1 mm and 1 km stand: drift <= 1e-6 of their size", precise(), sizes},
       {"tiny_wall", "A wall of cubes of 1 cm, dropped, lies still", precise(), tiny_wall},
       {"far", "1e7 m from the origin a column and a wall stand", precise(), far_away},

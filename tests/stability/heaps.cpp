@@ -60,7 +60,7 @@ void nothing_lost(Trial& trial) {
   scene.options = trial.options();
   scene.options.gravity = own.gravity;
   trial.begin(build_world(scene));
-  trial.run(trial.extent(3.0, 20.0));
+  trial.run(trial.extent(1.5, 20.0));
   double lowest = 0.0;
   for (std::uint32_t slot = 0; slot < trial.world().body_capacity(); ++slot) {
     lowest = std::min(lowest, trial.world().motion(slot).x.z());
@@ -72,8 +72,8 @@ void nothing_lost(Trial& trial) {
 
 std::vector<Case> heap_cases() {
   return {
-      {"heap_boxes", "A heap of dropped boxes: at rest, penetration <= 1 mm, no creep in 10 min",
-       sturdy(1.0 / 60.0), heap_of_boxes, false, true},
+      {"heap_boxes", "A heap of dropped boxes: at rest, penetration <= 1 mm, no creep in 10 min", nobody(),
+       heap_of_boxes, false, true},
       {"heap_mixed",
        "The pile of 1000 mixed shapes: at rest, penetration <= 1 mm, no creep in 10 min",
        {},

@@ -134,7 +134,7 @@ std::vector<Case> impact_cases() {
   return {
       {"gas", "An elastic gas of balls keeps its energy to 1e-11 and nobody overlaps", engines(), elastic_gas,
        false, true},
-      {"bounces", "A ball with C_r = 0.99 comes to rest in its time", engines(), bounces_to_rest},
+      {"bounces", "A ball with C_r = 0.99 comes to rest in its time", precise(), bounces_to_rest},
       {"bullet", "At 1 km/s nothing passes through a wall of 1 mm", engines(), bullet},
       {"cradle", "A cradle with gaps of 1 nm hands on its ball to 1e-9 m/s", engines(), handed_on},
       {"break", "A break of 15 balls keeps momentum and energy", engines(), billiard_break},

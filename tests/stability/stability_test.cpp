@@ -1,6 +1,10 @@
 // Every stress case in short, the default way and the others that promise it; `./run stress` runs them whole, every way.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cctype>
+#include <ostream>
+
 #include "stability/case.h"
 
 namespace tumble::stability {
@@ -9,6 +13,7 @@ namespace {
 struct Attempt {
   Case stress;
   Way way;
+  friend void PrintTo(const Attempt& attempt, std::ostream* out) { *out << attempt.stress.claim; }
 };
 
 std::vector<Way> tested_ways(const Case& stress) {
@@ -36,14 +41,14 @@ TEST_P(Stress, Holds) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Cases, Stress, ::testing::ValuesIn(attempts()), [](const auto& info) {
-  const auto& [stress, way] = info.param;
-  std::string name = stress.name + "_" + describe(way);
-  for (char& c : name) {
-    if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
-  }
+std::string test_name(const ::testing::TestParamInfo<Attempt>& info) {
+  std::string name = info.param.stress.name + "_" + describe(info.param.way);
+  std::replace_if(
+      name.begin(), name.end(), [](unsigned char c) { return std::isalnum(c) == 0; }, '_');
   return name;
-});
+}
+
+INSTANTIATE_TEST_SUITE_P(Cases, Stress, ::testing::ValuesIn(attempts()), test_name);
 
 }  // namespace
 }  // namespace tumble::stability

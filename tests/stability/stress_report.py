@@ -1,32 +1,48 @@
 #!/usr/bin/env python3
-"""Makes README.md and stress.png of what the program `stress` printed.
+"""Runs the stress cases, all cores at once, and says what every way holds and what it does not.
 
-    stress_report.py STRESS CSV OUT [READ_ME_HEAD...]   CSV: the program's output; OUT: folder of README.md and stress.png
+    stress_report.py STRESS [OPTION...]     STRESS: the program; options are its own, see STRESS --help
 
-The table has a row for each case and a column for each solver; a cell says for each step whether it holds at every level
-of accuracy. The picture has a column for each way and shows how far from its bound the worst check of a case is.
+Without options but --limit, what is printed goes to README.md too, and the picture beside it; else they lie beside the
+program. stress.csv, all measurements, always does. The table has a row for each case and a column for each solver; a cell
+says for each step whether it holds at every level of accuracy. The picture has a column for each way and shows how far from
+its bound the worst check of a case is. Exit status 1: something that was promised does not hold.
 """
 import collections
+import concurrent.futures
 import csv
+import io
 import math
+import os
 import pathlib
 import platform
 import re
 import subprocess
 import sys
 
+HERE = pathlib.Path(__file__).parent
 SOLVERS = ["automatic", "exact", "soft_step", "pgs", "nncg", "course_impulse"]
 STEPS = ["1/60", "1/240", "1/1000"]
 LEVELS = ["fast", "balanced", "exact"]
+LIMIT = 20  # [s] processor time of one trial
 
 
-def read(path):
+def run(program, name, options):
+    """What the program prints of one case, without the title line."""
+    print(f"running {name}", file=sys.stderr)
+    done = subprocess.run([program, *options, "--case", name], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL,
+                          text=True, check=False)
+    if done.returncode not in (0, 1):
+        sys.exit(f"{program} --case {name}: status {done.returncode}")
+    return done.stdout.split("\n", 1)
+
+
+def read(text):
     """{case: {(solver, step, accuracy): [row]}}, cases in order."""
     cases = {}
-    with open(path, newline="", encoding="utf-8") as file:
-        for row in csv.DictReader(file):
-            way = row["solver"], row["step"], row["accuracy"]
-            cases.setdefault(row["case"], collections.defaultdict(list))[way].append(row)
+    for row in csv.DictReader(io.StringIO(text)):
+        way = row["solver"], row["step"], row["accuracy"]
+        cases.setdefault(row["case"], collections.defaultdict(list))[way].append(row)
     return cases
 
 
@@ -109,35 +125,66 @@ def first_line(*command):
     return subprocess.run(command, check=True, capture_output=True, text=True).stdout.splitlines()[0]
 
 
-def main():
-    program, table, out = map(pathlib.Path, sys.argv[1:4])
-    arguments = sys.argv[4:]
-    cases = read(table)
-    listing = subprocess.run([program, "--list"], check=True, capture_output=True, text=True).stdout
-    claims = dict(line.split("\t") for line in listing.splitlines())
+def split_options(options, names):
+    """The cases that are asked for (all, if none), and the other options."""
+    wanted, others = [], []
+    words = iter(options)
+    for word in words:
+        if word == "--case":
+            wanted.append(next(words, ""))
+        else:
+            others.append(word)
+    unknown = set(wanted) - set(names)
+    if unknown:
+        sys.exit(f"no such case: {' '.join(sorted(unknown))}; --list names them all")
+    return [name for name in names if not wanted or name in wanted], others
+
+
+def write_table(cases, claims, command):
+    """Lines of Markdown."""
     model = re.search(r"model name\s*:\s*(.*)", pathlib.Path("/proc/cpuinfo").read_text(encoding="utf-8"))
-    seconds = sum(float(rows[0]["cpu_s"]) for ways in cases.values() for rows in ways.values() if rows)
-    trials = sum(1 for ways in cases.values() for rows in ways.values() if rows)
-    broken = list(failures(cases))
+    trials = [rows for ways in cases.values() for rows in ways.values() if rows]
+    seconds = sum(float(rows[0]["cpu_s"]) for rows in trials)
+    commit = first_line("git", "-C", HERE, "describe", "--always", "--dirty")
     lines = ["# Stress", "",
-             f"Written by `./run stress{''.join(' ' + argument for argument in arguments)}`: {len(cases)} cases, {trials} "
-             f"trials, {seconds:.0f} s of processor time on {model.group(1) if model else platform.machine()}, commit "
-             f"{first_line('git', '-C', pathlib.Path(__file__).parent, 'describe', '--always', '--dirty')}.",
-             "", "A cell has a mark for each step of 1/60, 1/240 and 1/1000 s: ● holds at every level of accuracy, ◐ at some, "
-             "○ at none, · not run. **Bold**: promised, at least at some steps.", "",
+             f"Written by `{command}`: {len(cases)} cases, {len(trials)} trials, {seconds:.0f} s of processor time on "
+             f"{model.group(1) if model else platform.machine()}, commit {commit}. A trial is given up after {LIMIT} s "
+             "unless `--limit` says otherwise.",
+             "", "A cell has a mark for each step of 1/60, 1/240 and 1/1000 s: ● holds at every level of accuracy, ◐ at "
+             "some, ○ at none, · not run. **Bold**: promised, at least at some steps.", "",
              "| case | what must hold | " + " | ".join(SOLVERS) + " |", "|---" * (2 + len(SOLVERS)) + "|"]
     for name, ways in cases.items():
-        lines.append(f"| {name} | {claims.get(name, '')} | " + " | ".join(cell(ways, s) for s in SOLVERS) + " |")
+        lines.append(f"| {name} | {claims[name]} | " + " | ".join(cell(ways, s) for s in SOLVERS) + " |")
+    broken = list(failures(cases))
     lines += ["", "## Promised and not held", ""]
     lines += ["| case | way | worst check | value | bound |", "|---|---|---|---|---|", *broken] if broken else ["Nothing."]
     lines += ["", "## Not promised, and not held at 1/240 s, balanced", ""]
     for solver in SOLVERS:
         missed = list(misses(cases, solver))
         lines.append(f"* {solver}: {', '.join(missed) if missed else 'nothing'}")
+    return lines, bool(broken)
+
+
+def main():
+    program, options = pathlib.Path(sys.argv[1]), sys.argv[2:]
+    listing = subprocess.run([program, "--list"], check=True, capture_output=True, text=True).stdout
+    claims = dict(line.split("\t") for line in listing.splitlines())
+    names, others = split_options(options, claims)
+    whole = len(names) == len(claims) and set(others[::2]) <= {"--limit"}
+    limit = [] if "--limit" in others else ["--limit", str(LIMIT)]
+    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+        printed = list(pool.map(lambda name: run(program, name, [*limit, *others]), names))
+    text = printed[0][0] + "\n" + "".join(rows for _, rows in printed)
+    program.with_name("stress.csv").write_text(text, encoding="utf-8")
+    cases = read(text)
+    lines, broken = write_table(cases, claims, " ".join(["./run stress", *options]))
+    out = HERE if whole else program.parent
     if draw(cases, out / "stress.png"):
         lines += ["", "![how far from its bound every case is, every way](stress.png)"]
-    (out / "README.md").write_text("\n".join(lines) + "\n", encoding="utf-8")
+    if whole:
+        (HERE / "README.md").write_text("\n".join(lines) + "\n", encoding="utf-8")
     print("\n".join(lines))
+    sys.exit(1 if broken else 0)
 
 
 if __name__ == "__main__":

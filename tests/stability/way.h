@@ -39,6 +39,9 @@ inline Claimants precise(double longest_step = 0.1) {
 inline Claimants sturdy(double longest_step = 0.1) {
   return {{Solver::automatic, Solver::exact, Solver::soft_step}, longest_step};
 }
+inline Claimants nobody() {
+  return {};
+}
 /// All but the scheme of the course, which is there to be compared with.
 inline Claimants engines(double longest_step = 0.1) {
   return {{Solver::automatic, Solver::exact, Solver::soft_step, Solver::pgs, Solver::nncg}, longest_step};

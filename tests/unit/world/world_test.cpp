@@ -119,7 +119,8 @@ TEST(World, TheTorqueOfAPushIsItsLeverArmTimesItsForce) {
   world.push({.body = box, .force = force, .torque = torque, .point_B = arm});
   world.step();
   const Vec3 expected = world.options().time_step * (arm.cross(force) + torque);
-  EXPECT_LE((world.motion(box.index).L - expected).norm(), 1e-8);  // 2.9e-9 of 0.01: the arm turns within the step
+  EXPECT_LE((world.motion(box.index).L - expected).norm(),
+            1e-8);  // 2.9e-9 of 0.01: the arm turns within the step
 }
 
 TEST(World, ABodyFramePushTurnsWithTheBody) {
@@ -209,6 +210,47 @@ TEST(World, ABodyThatWouldBecomeNonFiniteIsHeldAndReportedAndTheRestGoesOn) {
   EXPECT_TRUE(world.motion(doomed.index).x.allFinite());
   EXPECT_EQ(world.motion(doomed.index).x, Vec3(0, 0, 1));
   EXPECT_NEAR(world.motion(other.index).v.x(), 5.0 / 240.0, 1e-15);
+}
+
+TEST(World, APushBeyondAllNumbersMovesNothingAtAll) {
+  World world{Options{}};
+  world.create_body(ground());
+  const BodyId table =
+      world.create_body(body_of_mass("table", Box{Vec3(0.5, 0.5, 0.5)}, 1.0, Vec3(0, 0, 0.5)));
+  BodyDefinition speck = body("speck", Sphere{0.05}, Vec3(2, 0, 0.05));
+  speck.inertia = Inertia{1e-100, Vec3::Zero(), 1e-103 * Mat3::Identity()};
+  const BodyId doomed = world.create_body(speck);
+  run(world, 10);
+  const Vec3 before = world.motion(doomed.index).x;
+  world.push({.body = doomed, .force = Vec3(7e14, 0, -7e14), .duration = 1.0});
+  run(world, 120);
+  EXPECT_EQ(world.motion(doomed.index).x, before);
+  EXPECT_EQ(world.counters().non_finite_contained, 120u);
+  EXPECT_LE((world.motion(table.index).x - Vec3(0, 0, 0.5)).norm(), 1e-9);
+}
+
+TEST(World, AStepOfAnotherLengthGoesOnWhereTheLastEnded) {
+  Options options;
+  options.time_step = 1.0 / 64.0;
+  World world(options);
+  BodyDefinition stone = body("stone", Box{Vec3(0.3, 0.2, 0.1)}, Vec3(0, 0, 100));
+  stone.w_WB = Vec3(1, 5, 0.1);
+  const BodyId thrown = world.create_body(stone);
+  const BodyId pushed = world.create_body(body_of_mass("pushed", Sphere{0.5}, 2.0, Vec3(50, 0, 100)));
+  world.push({.body = pushed, .force = Vec3(8, 0, 0), .duration = 1.0});
+  World steady = world;
+  run(steady, 128);
+  run(world, 32);
+  world.set_time_step(1.0 / 1024.0);
+  run(world, 1024);
+  world.set_time_step(1.0 / 64.0);
+  run(world, 32);
+  EXPECT_EQ(world.time(), 2.0);
+  EXPECT_LE((world.motion(thrown.index).x - steady.motion(thrown.index).x).norm(), 1e-12);
+  EXPECT_LE(world.motion(thrown.index).q.angularDistance(steady.motion(thrown.index).q), 1e-12);
+  EXPECT_NEAR(world.motion(pushed.index).v.x(), 4.0, 1e-12) << "the push kept its second";
+  EXPECT_THROW(world.set_time_step(0.2), std::invalid_argument);
+  EXPECT_EQ(world.options().time_step, 1.0 / 64.0);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Every stress case in short, the default way and the others that promise it; `./run stress` runs them whole, every way.
+// Every stress case in short, the default way and the others that promise it; `./run stress` runs them every way, and whole.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// stress [--case NAME]... [--solver NAME]... [--step SECONDS]... [--accuracy NAME]... [--short] [--hours H] [--limit S]
+// stress [--case NAME]... [--solver NAME]... [--step SECONDS]... [--accuracy NAME]... [--full] [--hours H] [--limit S]
 //        [--share K/N] [--list]
 // Runs the stress cases every way and prints CSV: one check a line. Exit status 1 if something that was promised does
 // not hold.
@@ -16,7 +16,7 @@ namespace {
 struct Selection {
   std::vector<std::string> cases, solvers, accuracies;
   std::vector<double> steps;
-  Extent extent{.full = true};
+  Extent extent;
   bool include(const Case& stress) const {
     return cases.empty() || std::find(cases.begin(), cases.end(), stress.name) != cases.end();
   }
@@ -82,7 +82,7 @@ int run(const Selection& selection) {
 int main(int argc, char** argv) {
   using namespace tumble::stability;
   Selection selection;
-  bool in_short = false, list = false;
+  bool list = false;
   CLI::App app("Runs the stress cases and prints CSV, one check a line");
   app.add_option("--case", selection.cases, "only these cases");
   app.add_option("--solver", selection.solvers, "only these solvers");
@@ -92,10 +92,9 @@ int main(int argc, char** argv) {
       ->check(CLI::PositiveNumber);
   app.add_option("--limit", selection.extent.cpu_seconds, "processor time of one trial [s]")
       ->check(CLI::PositiveNumber);
-  app.add_flag("--short", in_short, "the sizes and times of the test program");
+  app.add_flag("--full", selection.extent.full, "whole sizes and times instead of those of the test program");
   app.add_flag("--list", list, "say which cases there are");
   CLI11_PARSE(app, argc, argv);
-  selection.extent.full = !in_short;
   if (list) {
     for (const Case& stress : all_cases()) fmt::print("{}\t{}\n", stress.name, stress.claim);
     return 0;

@@ -3,7 +3,7 @@
 
     stress_report.py STRESS [OPTION...]     STRESS: the program; options are its own, see STRESS --help
 
-Without options but --limit, what is printed goes to README.md too, and the picture beside it; else they lie beside the
+If no case is left out, what is printed goes to README.md too, and the picture beside it; else they lie beside the
 program. stress.csv, all measurements, always does. The table has a row for each case and a column for each solver; a cell
 says for each step whether it holds at every level of accuracy. The picture has a column for each way and shows how far from
 its bound the worst check of a case is. Exit status 1: something that was promised does not hold.
@@ -24,7 +24,7 @@ HERE = pathlib.Path(__file__).parent
 SOLVERS = ["automatic", "exact", "soft_step", "pgs", "nncg", "course_impulse"]
 STEPS = ["1/60", "1/240", "1/1000"]
 LEVELS = ["fast", "balanced", "exact"]
-LIMIT = 20  # [s] processor time of one trial
+LIMIT, FULL_LIMIT = 2, 60  # [s] processor time of one trial
 
 
 def run(program, name, options):
@@ -148,8 +148,8 @@ def write_table(cases, claims, command):
     commit = first_line("git", "-C", HERE, "describe", "--always", "--dirty")
     lines = ["# Stress", "",
              f"Written by `{command}`: {len(cases)} cases, {len(trials)} trials, {seconds:.0f} s of processor time on "
-             f"{model.group(1) if model else platform.machine()}, commit {commit}. A trial is given up after {LIMIT} s "
-             "unless `--limit` says otherwise.",
+             f"{model.group(1) if model else platform.machine()}, commit {commit}. Without `--full` sizes and "
+             f"times are those of the test program, and a trial is given up after {LIMIT} s.",
              "", "A cell has a mark for each step of 1/60, 1/240 and 1/1000 s: ● holds at every level of accuracy, ◐ at "
              "some, ○ at none, · not run. **Bold**: promised, at least at some steps.", "",
              "| case | what must hold | " + " | ".join(SOLVERS) + " |", "|---" * (2 + len(SOLVERS)) + "|"]
@@ -170,8 +170,9 @@ def main():
     listing = subprocess.run([program, "--list"], check=True, capture_output=True, text=True).stdout
     claims = dict(line.split("\t") for line in listing.splitlines())
     names, others = split_options(options, claims)
-    whole = len(names) == len(claims) and set(others[::2]) <= {"--limit"}
-    limit = [] if "--limit" in others else ["--limit", str(LIMIT)]
+    whole = len(names) == len(claims)
+    seconds = FULL_LIMIT if {"--full", "--hours"} & set(others) else LIMIT
+    limit = [] if "--limit" in others else ["--limit", str(seconds)]
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
         printed = list(pool.map(lambda name: run(program, name, [*limit, *others]), names))
     text = printed[0][0] + "\n" + "".join(rows for _, rows in printed)

@@ -83,7 +83,7 @@ void rush(Trial& trial) {
   options.gravity.setZero();
   World world(options);
   Dice dice(17);
-  const int balls = trial.extent(25, 400);
+  const int balls = trial.extent(16, 400);
   for (int i = 0; i < balls; ++i) {
     const Vec3 place = 20.0 * dice.vector() - Vec3(10, 10, 10);
     world.create_body(body_of_mass("ball" + std::to_string(i), Sphere{0.5}, 1.0, place));

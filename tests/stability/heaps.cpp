@@ -60,7 +60,7 @@ void nothing_lost(Trial& trial) {
   scene.options = trial.options();
   scene.options.gravity = own.gravity;
   trial.begin(build_world(scene));
-  trial.run(trial.extent(1.5, 20.0));
+  trial.run(trial.extent(1.0, 20.0));
   double lowest = 0.0;
   for (std::uint32_t slot = 0; slot < trial.world().body_capacity(); ++slot) {
     lowest = std::min(lowest, trial.world().motion(slot).x.z());

@@ -10,6 +10,7 @@
 #include <optional>
 #include <sstream>
 
+#include "protocol/channels.h"
 #include "support/fake_clock.h"
 #include "tumble/ack_t.hpp"
 #include "tumble/catalog_t.hpp"
@@ -477,7 +478,7 @@ TEST_F(ServerOfASpeck, HoldsReportsAndNamesABodyThatWouldBecomeNonFinite) {
   const CapturedLog log;
   force_command_t push = make_force(0.0, 0.5);
   push.body = 1;
-  push.force[1] = 1e15;
+  push.force[1] = kMaxForce;
   ASSERT_EQ(ask(push).status, Status::applied);
   EXPECT_EQ(server_->world().contained().size(), 1u);
   ASSERT_EQ(ask(make_force(kMass, 1.0)).status, Status::applied);

@@ -30,7 +30,8 @@ void eliminate(std::uint32_t row, Neighbours& graph) {
 
 }  // namespace
 
-BlockPattern::BlockPattern(std::uint32_t size, const std::vector<Edge>& edges) : position_(size, size) {
+BlockPattern::BlockPattern(std::uint32_t size, const std::vector<Edge>& edges, std::uint64_t limit)
+    : position_(size, size) {
   Neighbours graph(size);
   for (const auto& [a, b] : edges) {
     assert(a != b && a < size && b < size);
@@ -43,6 +44,13 @@ BlockPattern::BlockPattern(std::uint32_t size, const std::vector<Edge>& edges) :
       if (position_[row] != size) continue;
       if (best == size || graph[row].size() < graph[best].size()) best = row;
     }
+    // The pivot, a column of blocks by it, and an update between every two of them.
+    const std::uint64_t degree = graph[best].size();
+    products_ += 1 + degree + degree * degree;
+    if (products_ > limit) {
+      complete_ = false;
+      return;
+    }
     position_[best] = k;
     order_.push_back(best);
     eliminate(best, graph);
@@ -54,6 +62,11 @@ BlockPattern::BlockPattern(std::uint32_t size, const std::vector<Edge>& edges) :
     std::sort(rows_.begin() + begin_.back(), rows_.end());
   }
   begin_.push_back(block_count());
+  for (std::uint32_t k = 0; k < size; ++k) {
+    for (std::uint32_t j = begin_[k]; j < begin_[k + 1]; ++j) {
+      for (std::uint32_t i = j + 1; i < begin_[k + 1]; ++i) targets_.push_back(block(rows_[i], rows_[j]));
+    }
+  }
 }
 
 std::uint32_t BlockPattern::block(std::uint32_t position_a, std::uint32_t position_b) const {

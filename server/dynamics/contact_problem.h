@@ -60,6 +60,8 @@ struct ScalarRow {
   bool is_two_sided() const { return lower < 0.0; }
 };
 
+class PatternStore;
+
 struct ContactProblem {
   /// Average: bodies move with (v0 + v)/2, exact for constant acceleration. End: with v, right in a step in which a
   /// contact closes.
@@ -69,7 +71,8 @@ struct ContactProblem {
   std::vector<SolverBody> bodies;
   std::vector<PointContact> contacts;
   std::vector<ScalarRow> rows;
-  Drift drift = Drift::end;  ///< Out.
+  Drift drift = Drift::end;          ///< Out.
+  PatternStore* patterns = nullptr;  ///< Where patterns of factorization are kept; null: they are made anew.
 
   void clear() {
     bodies.clear();

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "dynamics/best_impulses.h"
+#include "dynamics/velocity_system.h"
 
 namespace tumble {
 
@@ -13,6 +14,7 @@ struct InteriorPointReport {
 
 /// Starts cold from the velocities v* of the problem, offers the impulses of every iterate to `best`, and ends once
 /// these are below `tolerance` [m/s], no longer get better, or are not finite. Leaves any impulses in the problem.
-InteriorPointReport solve_interior_point(ContactProblem& problem, double tolerance, BestImpulses& best);
+InteriorPointReport run_interior_point(ContactProblem& problem, VelocitySystem& system, double tolerance,
+                                       BestImpulses& best);
 
 }  // namespace tumble

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "dynamics/alm_newton.h"
 #include "dynamics/best_impulses.h"
 #include "dynamics/interior_point.h"
 #include "dynamics/linkage.h"
@@ -218,7 +219,10 @@ class Pass {
     prepare(part, {.slop = 0.0, .push_fraction = 0.0, .push_speed = 0.0});
     const double wanted = 0.1 * kAtRestWithFriction * speed;
     BestImpulses best(part);
-    solve_interior_point(part, wanted, best);
+    VelocitySystem system(part, VelocitySystem::find_pattern(part));
+    run_interior_point(part, system, wanted, best);
+    constexpr int kNewtonSteps = 10;
+    if (best.residual() > wanted) run_alm_newton(part, system, wanted, kNewtonSteps, best);
     best.restore();
     if (best.residual() > wanted) {
       SolverSettings settings;

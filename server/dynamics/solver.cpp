@@ -6,11 +6,13 @@
 namespace tumble {
 namespace {
 
-constexpr std::array<Rival<Solver, SolveFunction>, 6> kSolvers{{
+constexpr std::array<Rival<Solver, SolveFunction>, 8> kSolvers{{
     {Solver::course_impulse, "course_impulse", &solve_course_impulse},
     {Solver::pgs, "pgs", &solve_pgs},
     {Solver::nncg, "nncg", &solve_nncg},
     {Solver::soft_step, "soft_step", &solve_soft_step},
+    {Solver::alm_newton, "alm_newton", &solve_alm_newton},
+    {Solver::interior_point, "interior_point", &solve_interior_point},
     {Solver::exact, "exact", &solve_exact},
     {Solver::automatic, "automatic", &solve_automatic},
 }};

@@ -13,8 +13,10 @@ enum class Solver {
   pgs,        ///< Warm-started projected Gauss-Seidel, friction disc, sweeps until the residual is small.
   nncg,       ///< The same sweeps, accelerated by conjugate gradients.
   soft_step,  ///< Sub-steps with soft contacts and a relax pass (TGS-soft).
-  exact,      ///< Warm start if good enough, else interior point and polish: to rounding, at any mass ratio.
-  automatic,  ///< exact for islands of up to `exact_bodies` movable bodies, soft_step for larger ones.
+  alm_newton,  ///< Newton on Coulomb's law from the warm start: to rounding in two or three steps, if it is near.
+  interior_point,  ///< From a cold start: near the solution at any mass ratio, to rounding where nothing slides.
+  exact,  ///< Warm start if good enough, else alm_newton, else interior_point and alm_newton: to rounding.
+  automatic,  ///< exact for islands whose factorization is within `exact_work`, soft_step for the others.
 };
 
 struct SolverSettings {
@@ -22,14 +24,21 @@ struct SolverSettings {
   /// [m/s] residual at which pgs and nncg stop, and at which they and exact accept a warm start unsolved. exact solves to
   /// a tenth of it: 1e-9 by default, a thousandth of what certified rest asks for, in reach of every standing scene.
   double tolerance = 1e-8;
-  int sub_steps = 4;            ///< soft_step.
-  int exact_bodies = 60;        ///< automatic: largest island, in movable bodies, that is solved exactly.
-  Vec3 gravity = Vec3::Zero();  ///< [m/s^2]; exact tells implausible impulses by it.
+  int sub_steps = 4;  ///< soft_step.
+  /// automatic: largest work of a factorization, in products of 6 x 6 blocks, of an island that is solved exactly.
+  double exact_work = 3000.0;
+  /// automatic: as many times more for islands slower than exact_calm_speed [m/s, rad/s], which end in a few factorizations and
+  /// then rest. A wall of 210 boxes takes WALL products, a heap of 1000 bodies a million.
+  double exact_calm_factor = 30.0;
+  double exact_calm_speed = 0.1;
+  Vec3 gravity = Vec3::Zero();  ///< [m/s^2]; the exact solvers tell implausible impulses by it.
 };
 
 struct SolverReport {
   int sweeps = 0;
+  int newton_steps = 0;   ///< Factorizations of Newton's method.
   int iterations = 0;     ///< Factorizations of the interior point method.
+  bool exact = false;     ///< The result is one of the exact solvers.
   bool fallback = false;  ///< exact found no trustworthy solution: soft_step's was taken.
   double residual = 0.0;  ///< [m/s], by compute_residual on the result.
   bool accepted = false;  ///< The warm start was good as it was: nothing was solved.
@@ -41,6 +50,8 @@ SolverReport solve_course_impulse(ContactProblem& problem, const SolverSettings&
 SolverReport solve_pgs(ContactProblem& problem, const SolverSettings& settings);
 SolverReport solve_nncg(ContactProblem& problem, const SolverSettings& settings);
 SolverReport solve_soft_step(ContactProblem& problem, const SolverSettings& settings);
+SolverReport solve_alm_newton(ContactProblem& problem, const SolverSettings& settings);
+SolverReport solve_interior_point(ContactProblem& problem, const SolverSettings& settings);
 SolverReport solve_exact(ContactProblem& problem, const SolverSettings& settings);
 SolverReport solve_automatic(ContactProblem& problem, const SolverSettings& settings);
 

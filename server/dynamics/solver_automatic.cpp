@@ -1,17 +1,21 @@
-// The exact solver where its cost is bounded, sub-steps where it would not be. The choice is made from counts alone,
-// never from a clock, so it is the same on every machine. Both solvers store the impulses of whole steps, so an island
-// may grow or shrink across the border and keep its warm start.
-#include <algorithm>
-
-#include "dynamics/solver.h"
+// The exact solver where its cost is bounded, sub-steps where it would not be. The choice is made from the work that a
+// factorization of the island takes and from its speed, never from a clock, so it is the same on every machine. Both
+// solvers store the impulses of whole steps, so an island may change between them and keep its warm start.
+#include "dynamics/ladder.h"
 
 namespace tumble {
 
 SolverReport solve_automatic(ContactProblem& problem, const SolverSettings& settings) {
-  const auto movable = std::count_if(problem.bodies.begin(), problem.bodies.end(),
-                                     [](const SolverBody& body) { return body.inv_mass > 0.0; });
-  return movable <= settings.exact_bodies ? solve_exact(problem, settings)
-                                          : solve_soft_step(problem, settings);
+  Ladder ladder(problem, settings);
+  if (!ladder.solved()) {
+    const bool calm = ladder.start_speed() < settings.exact_calm_speed;
+    const double limit = settings.exact_work * (calm ? settings.exact_calm_factor : 1.0);
+    if (!ladder.fits(static_cast<std::uint64_t>(limit))) {
+      ladder.leave();
+      return solve_soft_step(problem, settings);
+    }
+  }
+  return finish_exactly(ladder, settings);
 }
 
 }  // namespace tumble

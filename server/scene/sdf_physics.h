@@ -22,7 +22,10 @@ void for_each_option(OptionsType& options, Visit&& visit) {
   visit("max_sweeps", options.solver_settings.max_sweeps);
   visit("tolerance", options.solver_settings.tolerance);
   visit("sub_steps", options.solver_settings.sub_steps);
-  visit("exact_bodies", options.solver_settings.exact_bodies);
+  visit("exact_work", options.solver_settings.exact_work);
+  visit("exact_calm_factor", options.solver_settings.exact_calm_factor);
+  visit("exact_calm_speed", options.solver_settings.exact_calm_speed);
+  visit("keep_patterns", options.keep_patterns);
   visit("slop", options.bounds.slop);
   visit("sweep_slop", options.sweep_slop);
   visit("push_fraction", options.bounds.push_fraction);

@@ -18,12 +18,15 @@ struct Counters {
   std::uint64_t islands_solved = 0, islands_accepted = 0, islands_free = 0;
   std::uint64_t islands_smooth = 0;  ///< Of springs only, by collocation.
   std::uint64_t sweeps = 0;
-  std::uint64_t solver_iterations = 0;  ///< Factorizations of the exact solver.
-  std::uint64_t solver_fallbacks = 0;   ///< Islands without a trustworthy exact solution.
-  std::uint64_t slides_ended = 0;       ///< Within a step, at times of their own.
-  std::uint64_t impacts = 0;            ///< Pairs that struck.
-  std::uint64_t impacts_capped = 0;     ///< Bodies and islands whose impacts reached the bound of a step.
-  std::uint64_t impacts_micro = 0;      ///< Impacts below the threshold: resting contact from then on.
+  std::uint64_t solver_iterations = 0;  ///< Factorizations of the exact solver: interior point and Newton.
+  std::uint64_t newton_steps = 0;       ///< Those of Newton's method.
+  std::uint64_t islands_exact = 0;  ///< Solved without sub-steps: by sweeps, Newton or the interior point.
+  std::uint64_t patterns_kept = 0, patterns_made = 0;  ///< Patterns of factorization found again, and made.
+  std::uint64_t solver_fallbacks = 0;                  ///< Islands without a trustworthy exact solution.
+  std::uint64_t slides_ended = 0;                      ///< Within a step, at times of their own.
+  std::uint64_t impacts = 0;                           ///< Pairs that struck.
+  std::uint64_t impacts_capped = 0;  ///< Bodies and islands whose impacts reached the bound of a step.
+  std::uint64_t impacts_micro = 0;   ///< Impacts below the threshold: resting contact from then on.
   std::uint64_t impacts_ended = 0;  ///< Bouncing that came to its end (all that was left fitted in the step).
   std::uint64_t impacts_clamped = 0;  ///< Restitution shortened, since it would have raised kinetic energy.
   std::uint64_t impacts_gained = 0;   ///< Impacts that raised kinetic energy beyond rounding: always 0.

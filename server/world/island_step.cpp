@@ -63,7 +63,9 @@ void World::solve_problem(const StepContext& step) {
   ContactProblem& problem = scratch_.problem;
   const SolverReport solved = step.solve(problem, step.solver_settings);
   counters_.sweeps += static_cast<std::uint64_t>(solved.sweeps);
-  counters_.solver_iterations += static_cast<std::uint64_t>(solved.iterations);
+  counters_.solver_iterations += static_cast<std::uint64_t>(solved.iterations + solved.newton_steps);
+  counters_.newton_steps += static_cast<std::uint64_t>(solved.newton_steps);
+  counters_.islands_exact += solved.exact && !solved.accepted ? 1 : 0;
   counters_.solver_fallbacks += solved.fallback ? 1 : 0;
   ++(solved.accepted ? counters_.islands_accepted : counters_.islands_solved);
   step_residual_ = std::max(step_residual_, solved.residual);
@@ -103,6 +105,7 @@ void World::begin_problem(double h) {
   scratch_.problem.clear();
   scratch_.problem.h = h;
   scratch_.impulse_share = 1.0;
+  scratch_.problem.patterns = options_.keep_patterns ? &scratch_.patterns : nullptr;
   scratch_.problem_slot.clear();
   scratch_.after_forces.clear();
   scratch_.contact_source.clear();

@@ -42,6 +42,8 @@ struct Options {
   /// larger ones they end with the step, which is wrong by mu g h^2/2 at most. Two or three solutions each. 0: none.
   int slide_bodies = 8;
   bool warm_start = true;  ///< Off: every solve starts from zero impulses.
+  /// Off: patterns of factorization are made anew for every solve, with the same results.
+  bool keep_patterns = true;
 
   // Rest
   RestSettings rest;

@@ -69,6 +69,9 @@ void World::step(const std::function<void(Stage)>& stage_done) {
   update_boxes(step);
   stage_done(Stage::broad_phase);
   ++step_count_;
+  scratch_.patterns.end_step();
+  counters_.patterns_kept = scratch_.patterns.found();
+  counters_.patterns_made = scratch_.patterns.made();
   update_report();
   stage_done(Stage::report);
 }

@@ -14,6 +14,7 @@
 #include "collision/broad_phase.h"
 #include "dynamics/flight.h"
 #include "dynamics/island.h"
+#include "dynamics/pattern_store.h"
 #include "dynamics/smooth_motion.h"
 #include "world/contact_graph.h"
 #include "world/definition.h"
@@ -156,6 +157,7 @@ class World {
     Islands islands;
     SmoothSystem smooth;
     ContactProblem problem;
+    PatternStore patterns;
     std::vector<std::uint32_t> problem_slot;  // slot of each body of the problem
     std::vector<std::uint32_t> local;         // by slot: index in the problem, or kWorld
     struct Source {

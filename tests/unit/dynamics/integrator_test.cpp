@@ -103,8 +103,8 @@ TEST(ClosedForm, EndsWhereTheExactSolutionDoes) {
   // Made anew at each step: each start rounds. One flight over the whole time is exacter, see FreeRotation.
   EXPECT_LT(end_error(kGeneric, integrate_closed_form, 1.0 / 60), 7e-13);  // 6.6e-14
   EXPECT_LT(end_error(kPlate, integrate_closed_form, 1.0 / 60), 9e-13);    // 8.3e-14
-  EXPECT_LT(end_error(kPlate, integrate_closed_form, 1.0), 1e-12);  // 1.1e-13
-  EXPECT_LT(end_error(kTorque, integrate_closed_form, 1.0 / 60), 2e-13);  // 2.9e-14
+  EXPECT_LT(end_error(kPlate, integrate_closed_form, 1.0), 1e-12);         // 1.1e-13
+  EXPECT_LT(end_error(kTorque, integrate_closed_form, 1.0 / 60), 2e-13);   // 2.9e-14
 }
 
 TEST(Rk4, EndsWithTheErrorOfItsOrder) {

@@ -1,11 +1,12 @@
-// The sparse block factorization against the dense matrix it stands for, and the order of elimination.
+// The sparse block factorization against the dense matrix it stands for, the order of elimination, and what is kept of it.
 #include <gtest/gtest.h>
 
 #include <random>
 
-#include <Eigen/Cholesky>
+#include <Eigen/LU>
 
-#include "dynamics/block_cholesky.h"
+#include "dynamics/block_lu.h"
+#include "dynamics/pattern_store.h"
 
 namespace tumble {
 namespace {
@@ -39,38 +40,64 @@ TEST(BlockPattern, ARingFillsOneBlockABody) {
   EXPECT_EQ(BlockPattern(10, edges).block_count(), 10u + 7u);
 }
 
-/// J^T J + 1 of random block rows over the edges: symmetric positive definite with exactly the pattern.
+TEST(BlockPattern, CountsTheProductsOfAFactorizationAndGivesUpAboveALimit) {
+  // A chain: 9 bodies with one later neighbour (pivot, column, update), and the last one.
+  EXPECT_EQ(BlockPattern(10, chain(10)).products(), 9u * 3u + 1u);
+  EXPECT_TRUE(BlockPattern(10, chain(10), 28).complete());
+  EXPECT_FALSE(BlockPattern(10, chain(10), 27).complete());
+}
+
+TEST(PatternStore, FindsAPatternAgainWhileItIsAskedForEveryStep) {
+  PatternStore store;
+  const auto first = store.find(10, chain(10), BlockPattern::kNoLimit);
+  store.end_step();
+  EXPECT_EQ(store.find(10, chain(10), BlockPattern::kNoLimit), first);
+  Edges other = chain(10);
+  other.pop_back();
+  EXPECT_NE(store.find(10, other, BlockPattern::kNoLimit), first);
+  EXPECT_EQ(store.found(), 1u);
+  EXPECT_EQ(store.made(), 2u);
+  store.end_step();
+  store.end_step();
+  store.find(10, chain(10), BlockPattern::kNoLimit);
+  EXPECT_EQ(store.made(), 3u) << "forgotten after a step without it";
+}
+
+/// 1 + J^T G J of random block rows J over the edges with one unsymmetric G: exactly the pattern, and regular.
 struct RandomSystem {
   Eigen::MatrixXd dense;
-  BlockCholesky sparse;
+  BlockLu sparse;
 
   RandomSystem(std::uint32_t size, const Edges& edges)
-      : dense(Eigen::MatrixXd::Identity(6 * size, 6 * size)), sparse(BlockPattern(size, edges)) {
+      : dense(Eigen::MatrixXd::Identity(6 * size, 6 * size)),
+        sparse(std::make_shared<const BlockPattern>(size, edges)) {
     std::mt19937 generator(7);
     const auto block = [&] {
       Mat6 m;
       for (int i = 0; i < 36; ++i) m(i) = static_cast<double>(generator()) / 2147483648.0 - 1.0;
       return m;
     };
+    const Mat6 G = Mat6::Identity() + 0.2 * block();
     sparse.set_zero();
     for (std::uint32_t i = 0; i < size; ++i) sparse.diagonal(i).setIdentity();
     for (const auto& [a, b] : edges) {
       const std::uint32_t low = std::min(sparse.pattern().position(a), sparse.pattern().position(b));
       const std::uint32_t high = std::max(sparse.pattern().position(a), sparse.pattern().position(b));
+      const std::uint32_t between = sparse.pattern().block(low, high);
       const Mat6 J_low = block(), J_high = block();
-      const Mat6 cross = J_high.transpose() * J_low;
-      sparse.diagonal(low) += J_low.transpose() * J_low;
-      sparse.diagonal(high) += J_high.transpose() * J_high;
-      sparse.below(sparse.pattern().block(low, high)) += cross;
-      dense.block<6, 6>(6 * low, 6 * low) += J_low.transpose() * J_low;
-      dense.block<6, 6>(6 * high, 6 * high) += J_high.transpose() * J_high;
-      dense.block<6, 6>(6 * high, 6 * low) += cross;
-      dense.block<6, 6>(6 * low, 6 * high) += cross.transpose();
+      add(sparse.diagonal(low), low, low, J_low.transpose() * G * J_low);
+      add(sparse.diagonal(high), high, high, J_high.transpose() * G * J_high);
+      add(sparse.lower(between), high, low, J_high.transpose() * G * J_low);
+      add(sparse.upper(between), low, high, J_low.transpose() * G * J_high);
     }
+  }
+  void add(Mat6& block, std::uint32_t row, std::uint32_t column, const Mat6& value) {
+    block += value;
+    dense.block<6, 6>(6 * row, 6 * column) += value;
   }
 };
 
-TEST(BlockCholesky, SolvesLikeTheDenseMatrix) {
+TEST(BlockLu, SolvesLikeTheDenseMatrix) {
   const Edges edges = {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {1, 4}, {4, 5},
                        {5, 6}, {6, 2}, {7, 0}, {7, 6}, {8, 3}};
   RandomSystem system(10, edges);  // body 9 touches nothing
@@ -79,13 +106,13 @@ TEST(BlockCholesky, SolvesLikeTheDenseMatrix) {
   Eigen::VectorXd b(60);
   for (int i = 0; i < 60; ++i) b[i] = x[static_cast<std::size_t>(i / 6)][i % 6] = 0.1 * i - 2.0;
   system.sparse.solve(x);
-  const Eigen::VectorXd expected = system.dense.llt().solve(b);
+  const Eigen::VectorXd expected = system.dense.partialPivLu().solve(b);
   for (int i = 0; i < 60; ++i) EXPECT_NEAR(x[static_cast<std::size_t>(i / 6)][i % 6], expected[i], 1e-12);
 }
 
-TEST(BlockCholesky, RefusesWhatIsNotPositiveDefinite) {
-  RandomSystem system(3, chain(3));
-  system.sparse.diagonal(1)(4, 4) = -1.0;
+TEST(BlockLu, RefusesWhatIsSingular) {
+  RandomSystem system(3, {});
+  system.sparse.diagonal(1).row(4).setZero();
   EXPECT_FALSE(system.sparse.factorize());
   RandomSystem poisoned(3, chain(3));
   poisoned.sparse.diagonal(2)(0, 0) = std::nan("");

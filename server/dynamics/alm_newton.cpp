@@ -1,0 +1,239 @@
+// See alm_newton.h. With y_n = l_n - m_n (u_n - b), y_t = l_t - m_t u_t, L = |y_t|, e = y_t/L, c = mu y_n/L (Alart,
+// Curnier 1991), every contact is taken for what its y says and answers a change du of its velocity with new impulses
+//   open  (y_n <= 0):       l = 0
+//   stick (L <= mu y_n):    l = l_old - R m (u + du - b)          R large: the multipliers' step to u = b
+//   slip:  l_n as in stick; l_t = mu l_n e - c/(1 - c) P (l_old + m_t du),   P = 1 - e e^T
+// all of the form p0 - G du. The changes of v and l found together are scaled back until the law is met better.
+#include "dynamics/alm_newton.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tumble {
+namespace {
+
+constexpr double kRigidity = 1e6;  // R: a step leaves a millionth of what a single contact lacks
+constexpr int kHalvings = 8;
+constexpr int kMaxStalls = 3;
+constexpr double kFrictionless = 1e-6;
+
+struct Law {
+  Coupling joins;
+  enum class Kind { contact, half_line, line, spring } kind;
+  double bound, friction, mass_n, mass_t;
+  double softness;          // spring
+  Vec3* contact = nullptr;  // where the impulse goes: one of the two
+  double* row = nullptr;
+  Vec3 l, u, answer, dl, du;  // impulse, velocity; p0; changes of a step
+  Mat3 G;
+};
+
+class AlmNewton {
+ public:
+  AlmNewton(ContactProblem& problem, VelocitySystem& system, double tolerance, BestImpulses& best);
+  int solve(int max_iterations);
+
+ private:
+  void add_rows(ContactProblem& problem);
+  void load();
+  static void linearize(Law& law);
+  static void linearize_contact(Law& law);
+  static double defect(const Law& law, double step);
+  double defect(double step) const;
+  bool find_changes();
+  double choose_step() const;
+  void store(double step);
+
+  VelocitySystem& system_;
+  const double tolerance_;
+  BestImpulses& best_;
+  std::vector<Law> laws_;
+  std::vector<Vec6> v_, dv_;
+};
+
+AlmNewton::AlmNewton(ContactProblem& problem, VelocitySystem& system, double tolerance, BestImpulses& best)
+    : system_(system), tolerance_(tolerance), best_(best) {
+  laws_.reserve(problem.contacts.size() + problem.rows.size());
+  for (PointContact& c : problem.contacts) {
+    if (c.mass_n == 0.0) continue;
+    Law& law = laws_.emplace_back();
+    law.joins = system.make_coupling(c);
+    law.kind = Law::Kind::contact;
+    law.friction = c.friction > kFrictionless ? c.friction : 0.0;
+    law.bound = c.bound;
+    law.mass_n = c.mass_n;
+    law.mass_t = c.mass_t;
+    law.contact = &c.lambda;
+  }
+  add_rows(problem);
+}
+
+void AlmNewton::add_rows(ContactProblem& problem) {
+  for (ScalarRow& row : problem.rows) {
+    if (row.mass == 0.0) continue;
+    Law& law = laws_.emplace_back();
+    law.joins = system_.make_coupling(row);
+    law.kind = row.is_soft()        ? Law::Kind::spring
+               : row.is_two_sided() ? Law::Kind::line
+                                    : Law::Kind::half_line;
+    law.friction = 0.0;
+    law.bound = row.is_soft() ? -row.bias : row.bound;
+    law.mass_n = law.mass_t = row.mass;
+    law.softness = row.softness;
+    law.row = &row.lambda;
+  }
+}
+
+/// The problem's impulses and the velocities that follow from them.
+void AlmNewton::load() {
+  system_.load_velocities(v_);
+  for (Law& law : laws_) {
+    law.l = law.contact ? *law.contact : Vec3(*law.row, 0.0, 0.0);
+    law.u = system_.velocity(law.joins, v_) + law.joins.offset;
+  }
+}
+
+void AlmNewton::linearize_contact(Law& law) {
+  const double stiffness = kRigidity * law.mass_n;
+  law.G(0, 0) = stiffness;
+  law.answer.x() = law.l.x() - stiffness * (law.u.x() - law.bound);
+  const double y1 = law.l.y() - law.mass_t * law.u.y(), y2 = law.l.z() - law.mass_t * law.u.z();
+  const double radius = law.friction * (law.l.x() - law.mass_n * (law.u.x() - law.bound));
+  const double length = std::sqrt(y1 * y1 + y2 * y2);
+  if (length <= radius) {
+    law.G(1, 1) = law.G(2, 2) = kRigidity * law.mass_t;
+    law.answer.y() = law.l.y() - kRigidity * law.mass_t * law.u.y();
+    law.answer.z() = law.l.z() - kRigidity * law.mass_t * law.u.z();
+    return;
+  }
+  const double e1 = y1 / length, e2 = y2 / length;
+  const double share = std::min(kRigidity, radius / (length - radius));  // c/(1 - c)
+  const double turn = share * law.mass_t;
+  law.G(1, 0) = law.friction * stiffness * e1;
+  law.G(2, 0) = law.friction * stiffness * e2;
+  law.G(1, 1) = turn * e2 * e2;
+  law.G(2, 2) = turn * e1 * e1;
+  law.G(1, 2) = law.G(2, 1) = -turn * e1 * e2;
+  const double across = share * (e1 * law.l.z() - e2 * law.l.y());  // P l = (-e2, e1) (...)
+  law.answer.y() = law.friction * law.answer.x() * e1 + across * e2;
+  law.answer.z() = law.friction * law.answer.x() * e2 - across * e1;
+}
+
+void AlmNewton::linearize(Law& law) {
+  law.G.setZero();
+  law.answer.setZero();
+  if (law.kind == Law::Kind::spring) {
+    law.G(0, 0) = law.softness;
+    law.answer.x() = -law.softness * (law.u.x() - law.bound);
+  } else if (law.kind == Law::Kind::line || law.l.x() - law.mass_n * (law.u.x() - law.bound) > 0.0) {
+    if (law.friction > 0.0) {
+      linearize_contact(law);
+    } else {
+      law.G(0, 0) = kRigidity * law.mass_n;
+      law.answer.x() = law.l.x() - law.G(0, 0) * (law.u.x() - law.bound);
+    }
+  }
+}
+
+bool AlmNewton::find_changes() {
+  system_.set_mass();
+  dv_.assign(v_.size(), Vec6::Zero());
+  for (Law& law : laws_) {
+    linearize(law);
+    system_.add_stiffness(law.joins, law.G);
+    system_.add_impulse(law.joins, law.answer - law.l, dv_);
+  }
+  if (!system_.factorize()) return false;
+  system_.solve(dv_);
+  for (Law& law : laws_) {
+    law.du = system_.velocity(law.joins, dv_);
+    law.dl = law.answer - law.G * law.du - law.l;
+  }
+  return true;
+}
+
+/// Mass times the square of what the law lacks after the step, as in compute_residual [kg m^2/s^2].
+double AlmNewton::defect(const Law& law, double step) {
+  const Vec3 l = law.l + step * law.dl, u = law.u + step * law.du;
+  const double m = law.mass_n;
+  if (law.kind == Law::Kind::spring) {
+    const double r = (l.x() + law.softness * (u.x() - law.bound)) / (m + law.softness);
+    return m * r * r;
+  }
+  const double y = l.x() - m * (u.x() - law.bound);
+  const double r_n = ((law.kind == Law::Kind::line ? y : std::max(0.0, y)) - l.x()) / m;
+  if (law.kind != Law::Kind::contact) return m * r_n * r_n;
+  double y1 = l.y() - law.mass_t * u.y(), y2 = l.z() - law.mass_t * u.z();
+  const double radius = law.friction * std::max(0.0, l.x()), square = y1 * y1 + y2 * y2;
+  if (square > radius * radius) {
+    const double shrink = radius / std::sqrt(square);
+    y1 *= shrink;
+    y2 *= shrink;
+  }
+  const double d1 = y1 - l.y(), d2 = y2 - l.z();
+  return m * r_n * r_n + (d1 * d1 + d2 * d2) / law.mass_t;
+}
+
+double AlmNewton::defect(double step) const {
+  double sum = 0.0;
+  for (const Law& law : laws_) sum += defect(law, step);
+  return sum;
+}
+
+/// The longest of 1, 1/2, 1/4... that brings the law closer; if none does, the best of them.
+double AlmNewton::choose_step() const {
+  const double before = defect(0.0);
+  double best = 1.0, least = kInfinity, step = 1.0;
+  for (int i = 0; i <= kHalvings; ++i, step *= 0.5) {
+    const double after = defect(step);
+    if (after < (1.0 - 0.1 * step) * before) return step;
+    if (after < least) {
+      least = after;
+      best = step;
+    }
+  }
+  return best;
+}
+
+void AlmNewton::store(double step) {
+  for (const Law& law : laws_) {
+    Vec3 l = law.l + step * law.dl;
+    if (law.kind == Law::Kind::contact || law.kind == Law::Kind::half_line) {
+      l.x() = std::max(0.0, l.x());
+      const double radius = law.friction * l.x(), length = std::sqrt(l.y() * l.y() + l.z() * l.z());
+      if (length > radius) l.tail<2>() *= radius / length;
+    }
+    if (law.contact) {
+      *law.contact = l;
+    } else {
+      *law.row = l.x();
+    }
+  }
+}
+
+int AlmNewton::solve(int max_iterations) {
+  double least = best_.residual();
+  int iterations = 0, stalls = 0;
+  while (iterations < max_iterations && stalls < kMaxStalls) {
+    load();
+    const bool solved = find_changes();
+    ++iterations;
+    if (!solved) break;
+    store(choose_step());
+    const double residual = best_.offer();
+    if (residual < tolerance_ || !(residual < kInfinity)) break;
+    stalls = residual < 0.8 * least ? 0 : stalls + 1;
+    least = std::min(least, residual);
+  }
+  return iterations;
+}
+
+}  // namespace
+
+AlmNewtonReport run_alm_newton(ContactProblem& problem, VelocitySystem& system, double tolerance,
+                               int max_iterations, BestImpulses& best) {
+  best.restore();
+  return {.iterations = AlmNewton(problem, system, tolerance, best).solve(max_iterations)};
+}
+
+}  // namespace tumble

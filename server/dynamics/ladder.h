@@ -1,0 +1,60 @@
+// The rungs that the exact solvers climb, cheapest first: take the warm start as it is, sweep, Newton, interior point.
+// Each starts from the best impulses so far and only an improvement counts; what has no solution (a body wedged between
+// walls that overlap it) is recognised by its residual or its impulses and left to soft_step, whose push is bounded.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "dynamics/best_impulses.h"
+#include "dynamics/solver.h"
+#include "dynamics/velocity_system.h"
+
+namespace tumble {
+
+class Ladder {
+ public:
+  Ladder(ContactProblem& problem, const SolverSettings& settings);
+
+  /// The warm start is a solution.
+  bool accepted() const { return report_.accepted; }
+  bool solved() const { return accepted() || best_.residual() < wanted_; }
+  /// A single body with up to two faces' contacts: sweeps cost less than one factorization.
+  bool is_small() const;
+  /// Fastest velocity of a body at the start of the step [m/s or rad/s].
+  double start_speed() const;
+  /// A factorization takes at most `limit` products of blocks. Asked before the first rung that factorizes.
+  bool fits(std::uint64_t limit);
+
+  void sweep(int max_sweeps);
+  void newton(int max_iterations);
+  /// Until the residual is below `residual` [m/s].
+  void interior_point(double residual);
+
+  /// Puts the best impulses into the problem, or soft_step's if they cannot be trusted.
+  SolverReport finish();
+  /// Leaves the problem as it was given.
+  void leave();
+
+  double wanted() const { return wanted_; }
+
+ private:
+  bool is_trustworthy() const;
+  VelocitySystem& system();
+
+  ContactProblem& problem_;
+  const SolverSettings& settings_;
+  const double wanted_;  // [m/s]
+  double mass_ = 0.0;    // [kg] of the movable bodies
+  double speed_ = 0.0;   // [m/s] fastest approach at a contact, or body
+  int movable_ = 0;
+  BestImpulses best_;
+  SolverReport report_;
+  std::shared_ptr<const BlockPattern> pattern_;
+  std::optional<VelocitySystem> system_;
+};
+
+/// Climbs on until the problem is solved to rounding; solver_exact.cpp.
+SolverReport finish_exactly(Ladder& ladder, const SolverSettings& settings);
+
+}  // namespace tumble

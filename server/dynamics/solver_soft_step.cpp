@@ -13,6 +13,9 @@
 namespace tumble {
 namespace {
 
+constexpr double kMostSubSteps =
+    400.0;                          // the longest step allowed, 0.1 s, by the sub-step of the exact level
+constexpr double kRounding = 1e-9;  // of a step that is meant to be a whole number of sub-steps
 constexpr double kPushSpeed = 3.0;  // [m/s] as BoundSettings::push_speed by default
 
 /// A damped spring of the contact's own mass, discretised implicitly.
@@ -28,11 +31,10 @@ struct Softness {
   }
 };
 
-/// Contact frequency 30 Hz, but at most 1/8 of the sub-step rate; overdamped. Against immovable bodies twice as stiff.
+/// Contact frequency an eighth of the sub-step rate, overdamped. Against immovable bodies twice as stiff.
 struct SoftPair {
   Softness between, against_fixed;
-  explicit SoftPair(double h)
-      : between(std::min(30.0, 0.125 / h), 10.0, h), against_fixed(2.0 * std::min(30.0, 0.125 / h), 5.0, h) {}
+  explicit SoftPair(double h) : between(0.125 / h, 10.0, h), against_fixed(0.25 / h, 5.0, h) {}
 };
 
 class SoftStep {
@@ -43,12 +45,17 @@ class SoftStep {
  private:
   struct BodyPath {
     SweptBody kick;                    // one sub-step of forces
-    Vec3 moved = Vec3::Zero();         // since the start of the step
     Vec3 turned = Vec3::Zero();        // sum of h w
     Quat rotation = Quat::Identity();  // product of the turns
   };
+  /// Since the start of the step: how far the centre has moved, and R - 1 by columns.
+  struct Displacement {
+    Lanes moved, x, y, z;
+
+    Lanes::Four of(const Vec3& r) const { return moved.e + (r.x() * x.e + r.y() * y.e + r.z() * z.e); }
+  };
   struct ContactPath {
-    double base;  // gap - n . (rB - rA)
+    double separation;
     Vec3 rA, rB;
     double l_n = 0.0, l_1 = 0.0, l_2 = 0.0;  // sums over the sub-steps
   };
@@ -73,6 +80,7 @@ class SoftStep {
   const ContactProblem::Drift drift_;
   Sweep sweep_;
   std::vector<BodyPath> bodies_;
+  std::vector<Displacement> displaced_;
   std::vector<ContactPath> contacts_;
   std::vector<RowPath> rows_;
   std::vector<SweptBody> start_;  // of the sub-step
@@ -90,6 +98,7 @@ SoftStep::SoftStep(ContactProblem& problem, int sub_steps)
       soft_(h_),
       drift_(only_springs(problem) ? ContactProblem::Drift::average : ContactProblem::Drift::end),
       sweep_(make_sweep(problem)),
+      displaced_(problem.bodies.size()),
       rows_(sweep_.rows.size()) {
   const double share = 1.0 / sub_steps;
   for (std::size_t i = 0; i < problem.bodies.size(); ++i) {
@@ -98,7 +107,7 @@ SoftStep::SoftStep(ContactProblem& problem, int sub_steps)
     sweep_.bodies[i] = {Lanes(body.v0), Lanes(body.w0)};
   }
   for (const PointContact& c : problem.contacts) {
-    if (c.mass_n > 0.0) contacts_.push_back({c.separation - c.n.dot(c.rB - c.rA), c.rA, c.rB});
+    if (c.mass_n > 0.0) contacts_.push_back({c.separation, c.rA, c.rB});
   }
   for (SweptContact& c : sweep_.contacts) {
     c.l_n *= share;
@@ -149,8 +158,8 @@ void SoftStep::soften_rows(double share) {
 }
 
 double SoftStep::gap(const SweptContact& c, const ContactPath& path) const {
-  const BodyPath &A = bodies_[c.a], &B = bodies_[c.b];
-  return c.n.d.vec3().dot(B.moved + B.rotation * path.rB - A.moved - A.rotation * path.rA) + path.base;
+  const Lanes::Four along = c.n.d.e * (displaced_[c.b].of(path.rB) - displaced_[c.a].of(path.rA));
+  return path.separation + ((along[0] + along[1]) + (along[2] + along[3]));
 }
 
 void SoftStep::sweep(bool push) {
@@ -176,12 +185,17 @@ void SoftStep::move() {
   const double before = drift_ == ContactProblem::Drift::average ? 0.5 : 0.0, after = 1.0 - before;
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     BodyPath& path = bodies_[i];
-    path.moved += h_ * (before * start_[i].v.vec3() + after * sweep_.bodies[i].v.vec3());
+    Displacement& displaced = displaced_[i];
+    displaced.moved.e += h_ * (before * start_[i].v.e + after * sweep_.bodies[i].v.e);
     const Vec3 turn = h_ * (before * start_[i].w.vec3() + after * sweep_.bodies[i].w.vec3());
     path.turned += turn;
     const Quat half(0.0, 0.5 * turn.x(), 0.5 * turn.y(), 0.5 * turn.z());
     const Quat change = half * path.rotation;
     path.rotation = normalized(Quat(path.rotation.coeffs() + change.coeffs()));
+    const Mat3 R = rotation_matrix(path.rotation);
+    displaced.x = Lanes(R.col(0) - Vec3::UnitX());
+    displaced.y = Lanes(R.col(1) - Vec3::UnitY());
+    displaced.z = Lanes(R.col(2) - Vec3::UnitZ());
   }
   for (std::size_t i = 0; i < rows_.size(); ++i) {
     const SweptRow& row = sweep_.rows[i];
@@ -214,7 +228,7 @@ void SoftStep::store() {
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     SolverBody& body = problem_.bodies[i];
     if (body.inv_mass == 0.0) continue;
-    body.shift = bodies_[i].moved - problem_.h * (before * body.v0 + after * body.v);
+    body.shift = displaced_[i].moved.vec3() - problem_.h * (before * body.v0 + after * body.v);
     body.turn = bodies_[i].turned - problem_.h * (before * body.w0 + after * body.w);
   }
   problem_.drift = drift_;
@@ -235,9 +249,11 @@ void SoftStep::solve() {
 }  // namespace
 
 SolverReport solve_soft_step(ContactProblem& problem, const SolverSettings& settings) {
-  SoftStep(problem, settings.sub_steps).solve();
+  const double shortest = std::ceil(problem.h / settings.longest_sub_step - kRounding);
+  const int sub_steps = std::max(settings.sub_steps, static_cast<int>(std::min(shortest, kMostSubSteps)));
+  SoftStep(problem, sub_steps).solve();
   SolverReport report;
-  report.sweeps = 2 * settings.sub_steps;
+  report.sweeps = 2 * sub_steps;
   report.residual = compute_residual(problem);
   return report;
 }

@@ -35,21 +35,16 @@ std::vector<BlockPattern::Edge> find_edges(const ContactProblem& problem,
   return edges;
 }
 
-/// (d, r x d) of an impulse d at the arm r.
-Vec6 wrench(const Vec3& d, const Vec3& r) {
-  Vec6 x;
-  x << d, r.cross(d);
-  return x;
-}
-
-/// H <- H + sign [S, -S [r']; [r] S, -[r] S [r']].
-void add_block(double sign, const Mat3& S, const Vec3& r, const Vec3& other, Mat6& H) {
-  Mat3 T;  // -S [r']
-  for (int i = 0; i < 3; ++i) T.row(i) = other.cross(S.row(i).transpose()).transpose();
-  for (int j = 0; j < 3; ++j) {
-    H.col(j) += sign * wrench(S.col(j), r);
-    H.col(j + 3) += sign * wrench(T.col(j), r);
-  }
+/// H <- H + [S, -S [r']; [r] S, -[r] S [r']].
+void add_block(const Mat3& S, const Vec3& r, const Vec3& other, Mat6& H) {
+  const auto add = [&](int column, const Vec3& d) {
+    H.col(column).head<3>() += d;
+    H.col(column).tail<3>() += r.cross(d);
+  };
+  for (int j = 0; j < 3; ++j) add(j, S.col(j));
+  add(3, other.y() * S.col(2) - other.z() * S.col(1));
+  add(4, other.z() * S.col(0) - other.x() * S.col(2));
+  add(5, other.x() * S.col(1) - other.y() * S.col(0));
 }
 
 }  // namespace
@@ -111,6 +106,13 @@ void VelocitySystem::load_velocities(std::vector<Vec6>& v) const {
   }
 }
 
+void VelocitySystem::load_start_velocities(std::vector<Vec6>& v) const {
+  v.resize(masses_.size());
+  for (std::size_t i = 0; i < problem_.bodies.size(); ++i) {
+    if (position_[i] != Coupling::kImmovable) v[position_[i]] << problem_.bodies[i].v0, problem_.bodies[i].w0;
+  }
+}
+
 Vec6 VelocitySystem::momentum(std::size_t position, const Vec6& v) const {
   const Mass& mass = masses_[position];
   Vec6 p;
@@ -127,29 +129,35 @@ Vec3 VelocitySystem::velocity(const Coupling& c, const std::vector<Vec6>& v) con
 
 void VelocitySystem::add_impulse(const Coupling& c, const Vec3& p, std::vector<Vec6>& sum) const {
   const Vec3 p_W = c.D.transpose() * p;
-  if (c.b != Coupling::kImmovable) sum[c.b] += wrench(p_W, c.rB);
-  if (c.a != Coupling::kImmovable) sum[c.a] -= wrench(p_W, c.rA);
+  if (c.b != Coupling::kImmovable) {
+    sum[c.b].head<3>() += p_W;
+    sum[c.b].tail<3>() += c.rB.cross(p_W);
+  }
+  if (c.a != Coupling::kImmovable) {
+    sum[c.a].head<3>() -= p_W;
+    sum[c.a].tail<3>() -= c.rA.cross(p_W);
+  }
 }
 
-void VelocitySystem::set_mass() {
+void VelocitySystem::set_mass(double scale) {
   matrix_.set_zero();
   for (std::uint32_t i = 0; i < masses_.size(); ++i) {
     Mat6& H = matrix_.diagonal(i);
-    H.diagonal().head<3>().setConstant(masses_[i].mass);
-    H.bottomRightCorner<3, 3>() = masses_[i].I_W;
+    H.diagonal().head<3>().setConstant(scale * masses_[i].mass);
+    H.bottomRightCorner<3, 3>() = scale * masses_[i].I_W;
   }
 }
 
 void VelocitySystem::add_stiffness(const Coupling& c, const Mat3& G) {
   const Mat3 S = c.D.transpose() * G * c.D;
   const bool moves_a = c.a != Coupling::kImmovable, moves_b = c.b != Coupling::kImmovable;
-  if (moves_a) add_block(1.0, S, c.rA, c.rA, matrix_.diagonal(c.a));
-  if (moves_b) add_block(1.0, S, c.rB, c.rB, matrix_.diagonal(c.b));
+  if (moves_a) add_block(S, c.rA, c.rA, matrix_.diagonal(c.a));
+  if (moves_b) add_block(S, c.rB, c.rB, matrix_.diagonal(c.b));
   if (!moves_a || !moves_b) return;
   Mat6& lower = matrix_.lower(c.block);
   Mat6& upper = matrix_.upper(c.block);
-  add_block(-1.0, S, c.rA, c.rB, c.a > c.b ? lower : upper);
-  add_block(-1.0, S, c.rB, c.rA, c.a > c.b ? upper : lower);
+  add_block(-S, c.rA, c.rB, c.a > c.b ? lower : upper);
+  add_block(-S, c.rB, c.rA, c.a > c.b ? upper : lower);
 }
 
 }  // namespace tumble

@@ -36,8 +36,9 @@ class VelocitySystem {
   Coupling make_coupling(const PointContact& c) const;
   Coupling make_coupling(const ScalarRow& row) const;
 
-  /// v, w of the problem's bodies.
+  /// v, w of the problem's bodies; v0, w0 of them.
   void load_velocities(std::vector<Vec6>& v) const;
+  void load_start_velocities(std::vector<Vec6>& v) const;
   /// M v of one body.
   Vec6 momentum(std::size_t position, const Vec6& v) const;
   /// D (relative velocity), without the offset.
@@ -45,8 +46,8 @@ class VelocitySystem {
   /// sum <- sum + J^T p.
   void add_impulse(const Coupling& c, const Vec3& p, std::vector<Vec6>& sum) const;
 
-  /// H <- M.
-  void set_mass();
+  /// H <- scale M.
+  void set_mass(double scale = 1.0);
   /// H <- H + J^T G J.
   void add_stiffness(const Coupling& c, const Mat3& G);
   bool factorize() { return matrix_.factorize(); }

@@ -22,6 +22,7 @@ void for_each_option(OptionsType& options, Visit&& visit) {
   visit("max_sweeps", options.solver_settings.max_sweeps);
   visit("tolerance", options.solver_settings.tolerance);
   visit("sub_steps", options.solver_settings.sub_steps);
+  visit("longest_sub_step", options.solver_settings.longest_sub_step);
   visit("exact_work", options.solver_settings.exact_work);
   visit("exact_calm_factor", options.solver_settings.exact_calm_factor);
   visit("exact_calm_speed", options.solver_settings.exact_calm_speed);

@@ -12,15 +12,18 @@ void set_accuracy(Options& options, Accuracy accuracy) {
   switch (accuracy) {
     case Accuracy::fast:
       solver.max_sweeps = 8;
-      solver.tolerance = 1e-4;
+      solver.tolerance = 1e-6;
+      solver.exact_work = 300.0;
+      solver.longest_sub_step = 1.0;
       break;
     case Accuracy::balanced:
-      solver.max_sweeps = SolverSettings{}.max_sweeps;
-      solver.tolerance = SolverSettings{}.tolerance;
+      solver = {.gravity = solver.gravity};
       break;
     case Accuracy::exact:
       solver.max_sweeps = 1000;
-      solver.tolerance = 1e-9;
+      solver.tolerance = 1e-11;
+      solver.exact_work = 1e6;
+      solver.longest_sub_step = 1.0 / 3840.0;
       break;
   }
 }
@@ -55,6 +58,7 @@ std::string check_options(const Options& options) {
       {"exact calm factor", options.solver_settings.exact_calm_factor, 1.0, 1e6},
       {"exact calm speed", options.solver_settings.exact_calm_speed, 0.0, 1e3},
       {"sub steps", static_cast<double>(options.solver_settings.sub_steps), 1.0, 1000.0},
+      {"longest sub step", options.solver_settings.longest_sub_step, 1e-6, 1.0},
       {"rest residual", options.rest.residual, 0.0, 1.0},
       {"rest speed", options.rest.speed, 0.0, 1.0},
       {"rest acceleration", options.rest.acceleration, 0.0, 10.0},

@@ -14,6 +14,7 @@ namespace {
 
 constexpr int kMaxIterations = 40;  // a wall of 210 bodies needs 7, a mass ratio of 1e6 25
 constexpr int kMaxStalls = 10;
+constexpr double kLongStep = 0.3;  // takes so much of the defects along
 constexpr double kToBoundary = 0.99;
 /// Smaller coefficients are left to the sweeps that follow: dividing by them would drown the normal condition.
 constexpr double kFrictionless = 1e-6;
@@ -249,13 +250,14 @@ int InteriorPoint::solve() {
     if (!factorize()) break;
     ++iterations;
     predict_and_correct();
-    advance(std::min(1.0, kToBoundary * step_length()));
+    const double step = std::min(1.0, kToBoundary * step_length());
+    advance(step);
     store();
     const double residual = best_.offer();
     if (residual < tolerance_ || !(residual < kInfinity)) break;
-    // Where light bodies carry heavy ones, the residual of the impulses falls long after the products s . z do.
+    // Where light bodies carry heavy ones, impulses have far to grow before products s . z and residuals fall.
     const double left = complementarity();
-    stalls = residual < 0.8 * least || left < 0.8 * least_left ? 0 : stalls + 1;
+    stalls = residual < 0.8 * least || left < 0.8 * least_left || step > kLongStep ? 0 : stalls + 1;
     least = std::min(least, residual);
     least_left = std::min(least_left, left);
   }

@@ -81,26 +81,32 @@ void Ladder::interior_point(double residual) {
   report_.iterations += run_interior_point(problem_, system(), residual, best_).iterations;
 }
 
-/// Bounds that cannot all be kept drive impulses to infinity and leave a residual of their own size. 1e-3 m/s and 1e-2
-/// of the speeds are far above what any solvable problem left; 1e3 times all momentum is more than any lever gives.
-bool Ladder::is_trustworthy() const {
+/// 1e3 times all momentum is more than any lever gives: bounds that cannot all be kept drive impulses to infinity.
+bool Ladder::is_plausible() const {
   const double gravity = std::sqrt(settings_.gravity.squaredNorm());
-  return report_.residual <= std::max(1e-3, 1e-2 * speed_) &&
-         largest_impulse(problem_) <= 1e3 * mass_ * (gravity * problem_.h + speed_);
+  return largest_impulse(problem_) <= 1e3 * mass_ * (gravity * problem_.h + speed_);
 }
 
 SolverReport Ladder::finish() {
   best_.restore();
-  report_.residual = best_.residual();
-  if (!is_trustworthy()) {
-    best_.drop();
-    report_.fallback = true;
-    report_.accepted = false;
+  const bool plausible = is_plausible();
+  // What has no solution leaves a residual of the size of its bounds, far above these.
+  if (!plausible || !(best_.residual() <= std::max(1e-3, 1e-2 * speed_))) {
+    if (plausible) {
+      best_.restore_start();
+    } else {
+      best_.drop();
+    }
     const SolverReport soft = solve_soft_step(problem_, settings_);
     report_.sweeps += soft.sweeps;
+    report_.fallback = true;
+    report_.accepted = false;
     report_.residual = soft.residual;
-    return report_;
+    if (!plausible || !(best_.residual() <= soft.residual)) return report_;
+    for (SolverBody& body : problem_.bodies) body.shift = body.turn = Vec3::Zero();
+    best_.restore();
   }
+  report_.residual = best_.residual();
   report_.exact = true;
   problem_.drift = choose_drift(problem_);
   return report_;

@@ -31,7 +31,7 @@ class Ladder {
   /// Until the residual is below `residual` [m/s].
   void interior_point(double residual);
 
-  /// Puts the best impulses into the problem, or soft_step's if they cannot be trusted.
+  /// Puts the best impulses into the problem, or soft_step's if these are better or the best are not plausible.
   SolverReport finish();
   /// Leaves the problem as it was given.
   void leave();
@@ -39,7 +39,7 @@ class Ladder {
   double wanted() const { return wanted_; }
 
  private:
-  bool is_trustworthy() const;
+  bool is_plausible() const;
   VelocitySystem& system();
 
   ContactProblem& problem_;

@@ -77,8 +77,9 @@ void Ladder::newton(int max_iterations) {
   report_.newton_steps += run_alm_newton(problem_, system(), wanted_, max_iterations, best_).iterations;
 }
 
-void Ladder::interior_point(double residual) {
+bool Ladder::interior_point(double residual) {
   report_.iterations += run_interior_point(problem_, system(), residual, best_).iterations;
+  return best_.residual() < residual;
 }
 
 /// 1e3 times all momentum is more than any lever gives: bounds that cannot all be kept drive impulses to infinity.

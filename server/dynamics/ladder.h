@@ -28,8 +28,8 @@ class Ladder {
 
   void sweep(int max_sweeps);
   void newton(int max_iterations);
-  /// Until the residual is below `residual` [m/s].
-  void interior_point(double residual);
+  /// Until the residual is below `residual` [m/s]; false if it is not.
+  bool interior_point(double residual);
 
   /// Puts the best impulses into the problem, or soft_step's if these are better or the best are not plausible.
   SolverReport finish();

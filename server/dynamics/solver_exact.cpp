@@ -16,9 +16,13 @@ constexpr double kNear = 1e-4;
 SolverReport finish_exactly(Ladder& ladder, const SolverSettings& settings) {
   if (!ladder.solved() && ladder.is_small()) ladder.sweep(settings.max_sweeps);
   if (!ladder.solved()) ladder.newton(kWarmSteps);
-  for (const double residual : {kNear, ladder.wanted()}) {
-    if (!ladder.solved()) ladder.interior_point(residual);
-    if (!ladder.solved()) ladder.newton(kPolishSteps);
+  if (!ladder.solved()) {
+    const bool near = ladder.interior_point(kNear);
+    ladder.newton(kPolishSteps);
+    if (near && !ladder.solved()) {
+      ladder.interior_point(ladder.wanted());
+      ladder.newton(kPolishSteps);
+    }
   }
   if (!ladder.solved()) ladder.sweep(kPolishSweeps);
   // What is slow may come to rest on these impulses: they are worth a step more.

@@ -17,11 +17,14 @@ void set_accuracy(Options& options, Accuracy accuracy) {
       solver.longest_sub_step = 1.0;
       break;
     case Accuracy::balanced:
-      solver = {.gravity = solver.gravity};
+      solver.max_sweeps = SolverSettings{}.max_sweeps;
+      solver.tolerance = SolverSettings{}.tolerance;
+      solver.exact_work = SolverSettings{}.exact_work;
+      solver.longest_sub_step = SolverSettings{}.longest_sub_step;
       break;
     case Accuracy::exact:
       solver.max_sweeps = 1000;
-      solver.tolerance = 1e-11;
+      solver.tolerance = 1e-10;
       solver.exact_work = 1e6;
       solver.longest_sub_step = 1.0 / 3840.0;
       break;

@@ -58,7 +58,7 @@ struct Options {
 /// Options for a level of accuracy: budgets and tolerances together. dynamics/README.md says what each does and costs.
 ///   fast: warm starts from 1e-6 m/s on, only small islands exact, 4 sub-steps a step for the others.
 ///   balanced: the defaults.
-///   exact: 1e-11 m/s, islands of up to a million products of blocks exact at any speed, sub-steps of 1/3840 s.
+///   exact: 1e-10 m/s, islands of up to a million products of blocks exact at any speed, sub-steps of 1/3840 s.
 void set_accuracy(Options& options, Accuracy accuracy);
 std::optional<Accuracy> accuracy_from_name(std::string_view name);
 

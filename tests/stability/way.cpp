@@ -39,12 +39,13 @@ std::string describe(const Way& way) {
                      accuracy_name(way.accuracy));
 }
 
-std::vector<Way> all_ways() {
+std::vector<Way> all_ways(bool full) {
   std::vector<Way> ways;
   for (const Solver solver : everyone().solvers) {
     for (const double time_step : {1.0 / 60.0, 1.0 / 240.0, 1.0 / 1000.0}) {
       for (const Accuracy accuracy : {Accuracy::fast, Accuracy::balanced, Accuracy::exact}) {
-        ways.push_back({solver, time_step, accuracy});
+        const bool usual = accuracy == Way{}.accuracy || time_step == Way{}.time_step;
+        if (full || usual) ways.push_back({solver, time_step, accuracy});
       }
     }
   }
@@ -52,7 +53,7 @@ std::vector<Way> all_ways() {
 }
 
 bool Claimants::include(const Way& way) const {
-  return way.time_step <= longest_step &&
+  return way.time_step <= longest_step && way.accuracy >= coarsest &&
          std::find(solvers.begin(), solvers.end(), way.solver) != solvers.end();
 }
 

@@ -21,19 +21,20 @@ std::string describe(const Way& way);
 /// "1/60", or seconds where the step is no such fraction.
 std::string describe_step(double time_step);
 
-/// Every solver with every step of 1/60, 1/240, 1/1000 s at every level of accuracy.
-std::vector<Way> all_ways();
+/// Every solver with every step of 1/60, 1/240, 1/1000 s; at every level of accuracy if `full`, else only at 1/240 s.
+std::vector<Way> all_ways(bool full);
 
 /// Who promises a case.
 struct Claimants {
   std::vector<Solver> solvers;
   double longest_step = 0.1;  ///< [s]
+  Accuracy coarsest = Accuracy::fast;
   bool include(const Way& way) const;
 };
 
-/// Solvers whose solution is the law of contact to rounding.
+/// Solvers whose solution is the law of contact to rounding, if they may iterate to it.
 inline Claimants precise(double longest_step = 0.1) {
-  return {{Solver::automatic, Solver::exact}, longest_step};
+  return {{Solver::automatic, Solver::exact}, longest_step, Accuracy::balanced};
 }
 /// Those and the sub-steps, which large islands get.
 inline Claimants sturdy(double longest_step = 0.1) {

@@ -31,11 +31,6 @@ BoxAxis find_face_axis(const BoxPair& pair, double tie) {
   return {a_axes[i], std::copysign(1.0, pair.t[i]) * Vec3::Unit(i), BoxAxis::Kind::face_a, i, 0};
 }
 
-/// Corner of a box that is furthest along d, both in its frame.
-Vec3 furthest_corner(const Vec3& h, const Vec3& d) {
-  return {std::copysign(h.x(), d.x()), std::copysign(h.y(), d.y()), std::copysign(h.z(), d.z())};
-}
-
 /// Whether a point is no further than this [m] from a box about the origin, or at least that deep in it.
 bool is_within(const Vec3& p, const Vec3& h, double distance) {
   const Vec3 beyond = p.cwiseAbs() - h;

@@ -2,6 +2,8 @@
 // Manocha, OBBTree, 1996). In A's frame.
 #pragma once
 
+#include <cmath>
+
 #include "collision/shape.h"
 
 namespace tumble {
@@ -13,6 +15,11 @@ struct BoxPair {
   Vec3 a, b, t;
   Mat3 R, R_abs;
 };
+
+/// Corner of a box with half extents h that is furthest along d, both in its frame.
+inline Vec3 furthest_corner(const Vec3& h, const Vec3& d) {
+  return {std::copysign(h.x(), d.x()), std::copysign(h.y(), d.y()), std::copysign(h.z(), d.z())};
+}
 
 struct BoxAxis {
   enum class Kind { face_a, face_b, edges };

@@ -1,6 +1,8 @@
 // See box_faces.h. Sutherland-Hodgman with ContactTolerance's rules, on a fixed number of corners.
 #include "collision/box_faces.h"
 
+#include <algorithm>
+
 #include "collision/feature_name.h"
 #include "collision/manifold_builder.h"
 
@@ -102,6 +104,12 @@ class FaceClip {
   void cut_side(double half, double tolerance);
   std::uint32_t name_meeting(std::uint32_t edge, std::uint32_t side) const;
   const Loop& loop() const { return loops_[current_]; }
+  /// Of what is left or, if that is nothing, of the uncut face.
+  Corner lowest_corner() const {
+    const auto end = loop().begin() + static_cast<std::ptrdiff_t>(count_);
+    const auto lower = [](const Corner& c, const Corner& d) { return c.p.z() < d.p.z(); };
+    return count_ > 0 ? *std::min_element(loop().begin(), end, lower) : lowest_;
+  }
 
   const BoxFacePlane& plane_;
   bool reference_is_a_;
@@ -193,8 +201,9 @@ Manifold FaceClip::make_manifold(const MiddleA& middle_A, const Vec3& normal_A, 
                                   {middle_A(corner.p), corner.p.z(), corner.name});
   };
   for (std::size_t i = 0; i < count_; ++i) add(loop()[i]);
-  if (manifold.count == 0 && overlap) add(lowest_);
-  return manifold;
+  if (manifold.count > 0 || !overlap) return manifold;
+  const Corner lowest = lowest_corner();
+  return single_point(normal_A, middle_A(lowest.p), std::min(lowest.p.z(), margin), margin, lowest.name);
 }
 
 }  // namespace

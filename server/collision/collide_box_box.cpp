@@ -43,17 +43,43 @@ Manifold make_manifold(const BoxPair& pair, const BoxAxis& axis, const BoxFace& 
   return clip_faces(pair, axis, face_a, face_b, axis.kind == BoxAxis::Kind::face_a || flat_a, margin);
 }
 
+/// How far the lowest corner of a contact along a face's normal lies beside that face.
+void measure_overhang(const BoxPair& pair, const BoxAxis& axis, const BoxFace& face_a, const BoxFace& face_b,
+                      AxisContact& contact) {
+  if (axis.kind == BoxAxis::Kind::edges) return;
+  const auto beside = [](const Vec3& p, const Vec3& h, int k) {
+    return std::max(std::abs(p[(k + 1) % 3]) - h[(k + 1) % 3], std::abs(p[(k + 2) % 3]) - h[(k + 2) % 3]);
+  };
+  const auto sine = [](const Vec3& n, int k) {
+    return std::sqrt(n[(k + 1) % 3] * n[(k + 1) % 3] + n[(k + 2) % 3] * n[(k + 2) % 3]);
+  };
+  const Vec3 n_B = pair.R.transpose() * axis.normal_A;
+  if (axis.kind == BoxAxis::Kind::face_a) {
+    contact.overhang = beside(pair.t + pair.R * furthest_corner(pair.b, -n_B), pair.a, face_a.k);
+    contact.tilt = sine(n_B, face_b.k);
+  } else {
+    const Vec3 corner = furthest_corner(pair.a, axis.normal_A);
+    contact.overhang = beside(pair.R.transpose() * (corner - pair.t), pair.b, face_b.k);
+    contact.tilt = sine(axis.normal_A, face_a.k);
+  }
+}
+
 /// The contact along the axis that separates most, by at most the margin.
 Manifold touch_along(const BoxPair& pair, const BoxAxis& axis, const Pose& X_AB, double margin,
                      PairCache& cache) {
   const BoxFace face_a = BoxFace::towards(axis.normal_A);
   const BoxFace face_b = BoxFace::towards(pair.R.transpose() * -axis.normal_A);
-  Manifold manifold = make_manifold(pair, axis, face_a, face_b, margin);
-  if (!touches_along_axis(manifold, axis.separation, pair.a.norm() + pair.b.norm())) {
-    manifold = contact_of_closest_points(manifold, axis.separation, lie_face_to_face(face_a, face_b),
-                                         Box{pair.a}, Box{pair.b}, X_AB, margin, cache);
-  }
-  return manifold;
+  AxisContact contact{make_manifold(pair, axis, face_a, face_b, margin), axis.separation,
+                      pair.a.norm() + pair.b.norm(), lie_face_to_face(face_a, face_b)};
+  if (contact.separation > 0.0 && contact.face_to_face) measure_overhang(pair, axis, face_a, face_b, contact);
+  if (touches_along_axis(contact)) return contact.manifold;
+  const ClosestContact closest =
+      contact_of_closest_points(contact, Box{pair.a}, Box{pair.b}, X_AB, margin, cache);
+  if (!closest.lying) return closest.manifold;
+  const BoxAxis across{closest.separation, closest.manifold.normal_A, axis.kind, axis.i, axis.j};
+  Manifold polygon = make_manifold(pair, across, face_a, face_b, margin);
+  set_deepest(polygon, closest.separation);
+  return polygon;
 }
 
 }  // namespace

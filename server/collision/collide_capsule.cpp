@@ -81,10 +81,9 @@ Meeting find_crossing(const Polytope& polytope, const Segment& core, const CoreH
     const Vec3 across = along.cross(core.reach);
     const double length2 = across.squaredNorm();
     if (length2 <= kParallel * along.squaredNorm() * core.reach.squaredNorm()) continue;
-    const double sign =
-        across.dot(polytope.faces[edge.left_face].normal + polytope.faces[edge.right_face].normal) < 0.0
-            ? -1.0
-            : 1.0;
+    const Vec3 outward = outward_from_edge(along, polytope.faces[edge.left_face].normal,
+                                           polytope.faces[edge.right_face].normal);
+    const double sign = across.dot(outward) < 0.0 ? -1.0 : 1.0;
     const Vec3 normal = across * (sign / std::sqrt(length2));
     const double height = normal.dot(core.centre - tail) - std::abs(normal.dot(core.reach));
     if (height > best.distance) best = {height, normal, i, 0};
@@ -92,31 +91,46 @@ Meeting find_crossing(const Polytope& polytope, const Segment& core, const CoreH
   return best;
 }
 
+/// How far the planes across n that touch the polytope and the core are apart: no distance is less.
+double separation_along(const Polytope& polytope, const Segment& core, const Vec3& n) {
+  return n.dot(core.centre) - std::abs(n.dot(core.reach)) + descend(polytope, -n, 0, -kInfinity).height;
+}
+
 /// The nearest place of a polytope to a core that is outside. An end of the core can only be nearest to the inside of the
-/// face that it is highest over, since no distance is below a height; all else is edge against core.
-Meeting find_closest(const Polytope& polytope, const Segment& core, const CoreHeights& heights) {
+/// face that it is highest over, since no distance is below a height; all else is edge against core. Places that are
+/// equally near but for rounding may look along directions as different as its root: the one that separates more is it.
+/// A distance up to the tie is no distance, and says nothing of the way.
+Meeting find_closest(const Polytope& polytope, const Segment& core, const CoreHeights& heights, double tie) {
   Meeting best;
   best.distance = kInfinity;
+  const auto is_better = [&](const Meeting& meeting) {
+    if (std::abs(meeting.distance - best.distance) > tie) return meeting.distance < best.distance;
+    return separation_along(polytope, core, meeting.normal_P) >
+           separation_along(polytope, core, best.normal_P);
+  };
   for (const double side : {-1.0, 1.0}) {
     std::uint32_t face = 0;
     for (std::uint32_t i = 1; i < polytope.faces.size(); ++i) {
       if (heights[i].at(side) > heights[face].at(side)) face = i;
     }
     const double height = heights[face].at(side);
-    if (height > 0.0 && height < best.distance && is_over_face(polytope, face, core.at(side))) {
-      best = {height, polytope.faces[face].normal, kNoFeature, face};
-    }
+    if (!(height > 0.0 && height < best.distance) || !is_over_face(polytope, face, core.at(side))) continue;
+    best = {height, polytope.faces[face].normal, kNoFeature, face};
   }
   for (std::uint32_t i = 0; i < polytope.edges.size(); ++i) {
     const ConvexHull::Edge& edge = polytope.edges[i];
     const CoreHeights::Height left = heights[edge.left_face], right = heights[edge.right_face];
-    if (std::max(left.low(), right.low()) >= best.distance || std::max(left.high(), right.high()) <= 0.0)
+    if (std::max(left.low(), right.low()) >= best.distance + tie ||
+        std::max(left.high(), right.high()) <= 0.0)
       continue;
     const Vec3 &tail = polytope.vertices[edge.tail], &head = polytope.vertices[edge.head];
-    const SegmentPair pair = closest_points(core, {0.5 * (tail + head), 0.5 * (head - tail)});
+    const Segment segment{0.5 * (tail + head), 0.5 * (head - tail)};
+    const SegmentPair pair = closest_points(core, segment);
     const Vec3 apart = pair.p_A - pair.p_B;
     const double distance = apart.norm();
-    if (distance > 0.0 && distance < best.distance) best = {distance, apart / distance, i, 0};
+    if (distance <= tie) return {distance, best.normal_P, i, 0};
+    const Meeting meeting{distance, direction_between(core, segment, pair, apart), i, 0};
+    if (is_better(meeting)) best = meeting;
   }
   return best;
 }
@@ -206,9 +220,11 @@ Manifold collide_core(const CapsuleQuery& q, PairCache& cache) {
   if (best.distance <= 0.0) {
     const Meeting crossing = find_crossing(q.polytope, q.core_P, heights, best.distance);
     if (crossing.distance > best.distance + tie) best = crossing;
-    remember(best);
   }
-  if (best.distance > 0.0) best = find_closest(q.polytope, q.core_P, heights);
+  if (best.distance > 0.0) {
+    const Meeting closest = find_closest(q.polytope, q.core_P, heights, tie);
+    if (closest.distance > tie) best = closest;
+  }
   remember(best);
   return best.distance > enough ? Manifold{} : make_manifold(q, best);
 }

@@ -18,6 +18,29 @@ double separation_along(const ConvexPieces& a, const ConvexPieces& b, const Vec3
   return n.dot(b.furthest(-n).p_A - a.furthest(n).p_A) - a.rounding() - b.rounding();
 }
 
+/// sin^2 of the slope from which on a part of a shape has one point that is furthest, whatever the normal's last digits.
+constexpr double kSloping = 1e-6;
+
+bool has_one_point(const Patch& patch, const Vec3& n) {
+  if (patch.kind == Patch::Kind::point) return true;
+  if (patch.is_flat()) return patch.normal.cross(n).squaredNorm() > kSloping;
+  const Vec3 along = patch.corners[1] - patch.corners[0];
+  return along.dot(n) * along.dot(n) > kSloping * along.squaredNorm();
+}
+
+/// Gives an inexact answer its place where only one point of A or B looks along the normal.
+void place_point(const Patch& a, const Patch& b, const ConvexPieces& pieces_a, const ConvexPieces& pieces_b,
+                 Separation& best) {
+  const Vec3 across = (best.separation + pieces_a.rounding() + pieces_b.rounding()) * best.normal_A;
+  if (has_one_point(a, best.normal_A)) {
+    best.p_A = pieces_a.furthest(best.normal_A).p_A;
+    best.p_B = best.p_A + across;
+  } else if (has_one_point(b, best.normal_A)) {
+    best.p_B = pieces_b.furthest(-best.normal_A).p_A;
+    best.p_A = best.p_B - across;
+  }
+}
+
 /// Takes the normal of a face of A or B if it does.
 void snap(const ConvexPieces& a, const ConvexPieces& b, const Vec3& face_normal, double size,
           Separation& best) {
@@ -43,6 +66,7 @@ Manifold collide_curved(const Shape& shape_a, const Shape& shape_b, const Pose& 
   const double size = bounding_radius(shape_a) + bounding_radius(shape_b);
   if (patch_a.is_flat()) snap(a, b, patch_a.normal, size, best);
   if (patch_b.is_flat()) snap(a, b, -patch_b.normal, size, best);
+  if (!best.exact) place_point(patch_a, patch_b, a, b, best);
   const PatchContact contact{best.normal_A, best.separation, best.p_A, best.p_B, a.rounding(), b.rounding()};
   return make_patch_manifold(patch_a, patch_b, contact, margin);
 }

@@ -91,11 +91,20 @@ Manifold cross_edges(const PolytopePair& pair, const Facet& facet, double margin
                                name_crossing(edge_a.tail, edge_a.head, edge_b.tail, edge_b.head));
 }
 
+/// The faces of A and B that look at each other along an axis.
+struct FacePair {
+  std::uint32_t a, b;
+  double cosine_a, cosine_b;  ///< Of the angle to the axis.
+
+  bool are_flat() const {
+    return std::min(cosine_a, cosine_b) > ContactTolerance::kFlat;
+  }
+  bool lie_face_to_face() const { return std::min(cosine_a, cosine_b) > ContactTolerance::kFaceToFace; }
+};
+
 /// `vertex_a` and `vertex_b` are the furthest ones along the facet's normal.
-Manifold make_manifold(const PolytopePair& pair, const Facet& facet, std::uint32_t vertex_a,
-                       std::uint32_t vertex_b, double margin, bool& face_to_face) {
-  const Mat3 identity = Mat3::Identity();
-  const Vec3 zero = Vec3::Zero();
+FacePair find_faces(const PolytopePair& pair, const Facet& facet, std::uint32_t vertex_a,
+                    std::uint32_t vertex_b) {
   const Vec3 towards_a_B = pair.R_AB.transpose() * -facet.normal_A;
   std::uint32_t face_a = facet.a, face_b = facet.b;
   if (facet.kind == Facet::Kind::edges) {
@@ -106,16 +115,36 @@ Manifold make_manifold(const PolytopePair& pair, const Facet& facet, std::uint32
   } else {
     face_a = face_towards(pair.a, facet.normal_A, vertex_a);
   }
-  const double cosine_a = pair.a.faces[face_a].normal.dot(facet.normal_A),
-               cosine_b = pair.b.faces[face_b].normal.dot(towards_a_B);
-  const bool flat_a = cosine_a > ContactTolerance::kFlat, flat_b = cosine_b > ContactTolerance::kFlat;
-  face_to_face = std::min(cosine_a, cosine_b) > ContactTolerance::kFaceToFace;
-  if (facet.kind == Facet::Kind::edges && !(flat_a && flat_b)) return cross_edges(pair, facet, margin);
-  const PlacedFace a{pair.a, pair.a.faces[face_a], identity, zero};
-  const PlacedFace b{pair.b, pair.b.faces[face_b], pair.R_AB, pair.p_AB};
-  const bool reference_is_a = facet.kind == Facet::Kind::face_a || flat_a;
-  return reference_is_a ? clip_faces(a, b, true, facet, margin, face_to_face)
-                        : clip_faces(b, a, false, facet, margin, face_to_face);
+  return {face_a, face_b, pair.a.faces[face_a].normal.dot(facet.normal_A),
+          pair.b.faces[face_b].normal.dot(towards_a_B)};
+}
+
+bool reference_is_a(const Facet& facet, const FacePair& faces) {
+  return facet.kind == Facet::Kind::face_a || faces.cosine_a > ContactTolerance::kFlat;
+}
+
+Manifold make_manifold(const PolytopePair& pair, const Facet& facet, const FacePair& faces, double margin) {
+  if (facet.kind == Facet::Kind::edges && !faces.are_flat()) return cross_edges(pair, facet, margin);
+  const Mat3 identity = Mat3::Identity();
+  const Vec3 zero = Vec3::Zero();
+  const PlacedFace a{pair.a, pair.a.faces[faces.a], identity, zero};
+  const PlacedFace b{pair.b, pair.b.faces[faces.b], pair.R_AB, pair.p_AB};
+  const bool face_to_face = faces.lie_face_to_face();
+  return reference_is_a(facet, faces) ? clip_faces(a, b, true, facet, margin, face_to_face)
+                                      : clip_faces(b, a, false, facet, margin, face_to_face);
+}
+
+/// How far the lowest vertex of a contact along a face's normal lies beside that face.
+void measure_overhang(const PolytopePair& pair, const Facet& facet, const FacePair& faces,
+                      std::uint32_t vertex_a, std::uint32_t vertex_b, AxisContact& contact) {
+  if (facet.kind == Facet::Kind::edges) return;
+  const Vec3 &normal_a = pair.a.faces[faces.a].normal, &normal_b = pair.b.faces[faces.b].normal;
+  contact.tilt = (pair.R_AB * normal_b).cross(normal_a).norm();
+  contact.overhang =
+      facet.kind == Facet::Kind::face_a
+          ? height_beside_face(pair.a, faces.a, pair.R_AB * pair.b.vertices[vertex_b] + pair.p_AB)
+          : height_beside_face(pair.b, faces.b,
+                               pair.R_AB.transpose() * (pair.a.vertices[vertex_a] - pair.p_AB));
 }
 
 /// The facet of the last search if its lead (kept by the pipeline) still holds, else a new search.
@@ -135,10 +164,20 @@ Manifold collide(const PolytopePair& pair, const Shape& a, const Shape& b, const
   cache.gap = separation;
   cache.slack = answer.lead;
   if (separation > margin) return {};
-  bool face_to_face = false;
-  Manifold manifold = make_manifold(pair, answer.facet, cache.vertex_A, cache.vertex_B, margin, face_to_face);
-  if (touches_along_axis(manifold, separation, pair.a.radius + pair.b.radius)) return manifold;
-  return contact_of_closest_points(manifold, separation, face_to_face, a, b, X_AB, margin, cache);
+  Facet facet = answer.facet;
+  const FacePair faces = find_faces(pair, facet, cache.vertex_A, cache.vertex_B);
+  AxisContact contact{make_manifold(pair, facet, faces, margin), separation, pair.a.radius + pair.b.radius,
+                      faces.lie_face_to_face()};
+  if (separation > 0.0 && contact.face_to_face)
+    measure_overhang(pair, facet, faces, cache.vertex_A, cache.vertex_B, contact);
+  if (touches_along_axis(contact)) return contact.manifold;
+  const ClosestContact closest = contact_of_closest_points(contact, a, b, X_AB, margin, cache);
+  if (!closest.lying) return closest.manifold;
+  facet.normal_A = closest.manifold.normal_A;
+  facet.separation = closest.separation;
+  Manifold polygon = make_manifold(pair, facet, faces, margin);
+  set_deepest(polygon, closest.separation);
+  return polygon;
 }
 
 }  // namespace

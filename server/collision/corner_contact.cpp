@@ -13,40 +13,47 @@ constexpr double kAxisRounding = 1e-14;
 /// Share of the radii by which clipping may miss the lowest point of bodies that lie face to face: a thousandth of the
 /// width times their tilt.
 constexpr double kLying = 1e-6;
+/// Share of the radii: across a gap this small, times the tilt, it makes no difference along which face it is seen.
+constexpr double kParallelFaces = 1e-11;
+
+/// The lowest point hangs over nothing, and what lies beneath the edge beside it is further away, another way.
+bool hangs_over(const AxisContact& contact) {
+  return contact.overhang > kAxisRounding * contact.size &&
+         contact.tilt * contact.separation > kParallelFaces * contact.size;
+}
 
 }  // namespace
 
-bool touches_along_axis(Manifold& manifold, double separation, double size) {
-  const double rounding = kAxisRounding * size;
-  if (separation >= -rounding && least_separation(manifold) > separation + rounding) return false;
-  set_deepest(manifold, separation);
+bool touches_along_axis(AxisContact& contact) {
+  const double rounding = kAxisRounding * contact.size;
+  const bool apart = contact.separation >= -rounding;
+  if (apart && least_separation(contact.manifold) > contact.separation + rounding) return false;
+  if (apart && hangs_over(contact)) return false;
+  set_deepest(contact.manifold, contact.separation);
   return true;
 }
 
-Manifold contact_of_closest_points(const Manifold& along_axis, double separation, bool face_to_face,
-                                   const Shape& a, const Shape& b, const Pose& X_AB, double margin,
-                                   PairCache& cache) {
-  const double size = bounding_radius(a) + bounding_radius(b);
-  Manifold manifold = along_axis;
+ClosestContact contact_of_closest_points(const AxisContact& along_axis, const Shape& a, const Shape& b,
+                                         const Pose& X_AB, double margin, PairCache& cache) {
+  const Manifold& manifold = along_axis.manifold;
+  const double separation = along_axis.separation;
   const Distance distance = compute_distance(a, b, X_AB);
-  // Bodies that lie face to face keep their whole polygon: clipping's tolerance for coincident edges left out the corner.
-  const bool lying = face_to_face && distance.axis_A.dot(manifold.normal_A) > ContactTolerance::kFaceToFace &&
-                     least_separation(manifold) <= distance.upper + kLying * size;
-  if (!distance.overlap && lying) {
-    set_deepest(manifold, distance.upper);
-    return manifold;
-  }
   const Vec3 middle_A = 0.5 * (distance.a_A + distance.b_A);
-  if (distance.overlap || distance.upper <= separation + kAxisRounding * size) {
+  if (distance.overlap || distance.upper <= separation + kAxisRounding * along_axis.size) {
     if (manifold.count == 0)
-      return single_point(manifold.normal_A, middle_A, separation, margin, name_corners());
-    set_deepest(manifold, separation);
-    return manifold;
+      return {single_point(manifold.normal_A, middle_A, separation, margin, name_corners())};
+    ClosestContact contact{manifold};
+    set_deepest(contact.manifold, separation);
+    return contact;
   }
   cache.axis_A = distance.axis_A;
   cache.gap = distance.lower;
   cache.slack = -1.0;
-  return single_point(distance.axis_A, middle_A, distance.upper, margin, name_corners());
+  const bool lying = along_axis.face_to_face &&
+                     distance.axis_A.dot(manifold.normal_A) > ContactTolerance::kFaceToFace &&
+                     least_separation(manifold) <= distance.upper + kLying * along_axis.size;
+  return {single_point(distance.axis_A, middle_A, distance.upper, margin, name_corners()), lying,
+          distance.upper};
 }
 
 }  // namespace tumble

@@ -9,16 +9,30 @@
 
 namespace tumble {
 
-/// `manifold` was made along an axis that separates by `separation` [m], of bodies whose radii add up to `size` [m].
-/// Overlapping, or if its lowest point is that near, this point gets the separation: true. False: the axis is not the
-/// whole truth, ask for the closest points.
-bool touches_along_axis(Manifold& manifold, double separation, double size);
+/// A manifold made along the axis that separates most.
+struct AxisContact {
+  Manifold manifold;
+  double separation;  ///< Along the axis [m].
+  double size;        ///< The bodies' radii together [m].
+  /// Clipped with the tolerance for bodies that lie face to face: the lowest point may be beside the reference face by that.
+  bool face_to_face = false;
+  double overhang = 0.0;  ///< By this [m]. Known of bodies that are apart along a face's normal.
+  double tilt = 0.0;      ///< Sine of the angle between the faces; where 0 it does not matter where the lowest point is.
+};
 
-/// Such a manifold that does not: the contact of the closest points, or none if these are beyond the margin.
-/// `face_to_face`: it was clipped with the tolerance for bodies that lie so, and may have missed its lowest point by
-/// that; then its polygon stays. Updates the cache's axis.
-Manifold contact_of_closest_points(const Manifold& along_axis, double separation, bool face_to_face,
-                                   const Shape& a, const Shape& b, const Pose& X_AB, double margin,
-                                   PairCache& cache);
+/// Overlapping, or if the lowest point is as near as the axis says, this point gets the separation: true. False: the axis
+/// is not the whole truth, ask for the closest points.
+bool touches_along_axis(AxisContact& contact);
+
+/// What the closest points say where it does not.
+struct ClosestContact {
+  Manifold manifold;  ///< One point, or none if these are beyond the margin.
+  /// Bodies lie face to face: their whole polygon, clipped along the manifold's normal, is the contact.
+  bool lying = false;
+  double separation = 0.0;  ///< [m]
+};
+/// Updates the cache's axis.
+ClosestContact contact_of_closest_points(const AxisContact& along_axis, const Shape& a, const Shape& b,
+                                         const Pose& X_AB, double margin, PairCache& cache);
 
 }  // namespace tumble

@@ -38,6 +38,8 @@ std::uint32_t encode(const Facet& facet) {
 struct EdgeArc {
   Vec3 tail, along, left, right;
   std::uint32_t index;
+  /// Some direction between the two normals.
+  Vec3 middle() const { return outward_from_edge(along, left, right); }
 };
 using Block = std::array<EdgeArc, kBlock>;
 
@@ -176,7 +178,7 @@ Facet FacetSearch::edges(const EdgeArc& a, const EdgeArc& b) {
   const Vec3 across = a.along.cross(b.along);
   const double length2 = across.squaredNorm();
   if (!(length2 > kParallel * a.along.squaredNorm() * b.along.squaredNorm())) return {};
-  const double sign = across.dot(a.left + a.right) < 0.0 ? -1.0 : 1.0;
+  const double sign = across.dot(a.middle()) < 0.0 ? -1.0 : 1.0;
   const Vec3 n = across * (sign / std::sqrt(length2));
   return {Facet::Kind::edges, a.index, b.index, separation_along(n), n};
 }
@@ -269,8 +271,8 @@ void FacetSearch::cross(const EdgeArc& a, const EdgeArc& b) {
   const double al = a.left.dot(b.along), ar = a.right.dot(b.along);
   if (al * ar >= 0.0) return;
   const Vec3 across = a.along.cross(b.along);
-  const double side = across.dot(a.left + a.right);
-  if (side * across.dot(b.left + b.right) <= 0.0) return;
+  const double side = across.dot(a.middle());
+  if (side * across.dot(b.middle()) <= 0.0) return;
   // Without the root: n . (b - a) <= needed, n = across / |across|.
   const double reach = (side < 0.0 ? -1.0 : 1.0) * across.dot(b.tail - a.tail);
   const double limit = needed();

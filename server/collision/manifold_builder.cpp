@@ -41,6 +41,9 @@ void set_deepest(Manifold& manifold, double separation) {
   for (std::size_t i = 1; i < static_cast<std::size_t>(manifold.count); ++i) {
     if (manifold.points[i].separation < manifold.points[lowest].separation) lowest = i;
   }
+  for (std::size_t i = 0; i < static_cast<std::size_t>(manifold.count); ++i) {
+    manifold.points[i].separation = std::max(manifold.points[i].separation, separation);
+  }
   manifold.points[lowest].separation = separation;
 }
 

@@ -79,7 +79,8 @@ inline Manifold single_point(const Vec3& normal_A, const Vec3& p_A, double separ
   return manifold;
 }
 
-/// Gives the lowest point this separation [m]: that of the axis, which clipping knows only up to its tolerances.
+/// Gives the lowest point this separation [m], that of the axis, and no other one less: clipping knows it only up to its
+/// tolerances.
 void set_deepest(Manifold& manifold, double separation);
 
 }  // namespace tumble

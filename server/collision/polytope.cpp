@@ -54,28 +54,59 @@ constexpr std::array<std::uint32_t, 24> kBoxNeighbours = box_neighbours(),
                                         kBoxEdgesAround = box_edges_around();
 constexpr std::array<ConvexHull::Edge, 12> kBoxEdges = box_edges();
 
-/// Closest point of a face to p, whose foot on the face's plane is `foot`.
-PointDistance closest_on_face(const Polytope& polytope, std::uint32_t index, const Vec3& p, double height) {
+/// Share of the sizes below which two distances are equal.
+constexpr double kDistanceTie = 1e-15;
+
+/// The nearest of places on the surface. Those that are equally near but for rounding may lie as far from each other as
+/// its root: the one whose normal separates more is it.
+class NearestPlace {
+ public:
+  NearestPlace(const Polytope& polytope, const Vec3& p)
+      : polytope_(polytope), p_(p), tie_(kDistanceTie * (polytope.radius + p.norm())) {}
+  void offer(const PointDistance& place) {
+    if (is_better(place)) best_ = place;
+  }
+  double tie() const { return tie_; }
+  double limit() const { return best_.distance + tie_; }
+  const PointDistance& best() const { return best_; }
+
+ private:
+  bool is_better(const PointDistance& place) const {
+    if (std::abs(place.distance - best_.distance) > tie_) return place.distance < best_.distance;
+    if ((place.foot - best_.foot).squaredNorm() <= tie_ * tie_) return false;
+    return separation_along(place.normal) > separation_along(best_.normal);
+  }
+  double separation_along(const Vec3& n) const {
+    return n.dot(p_) + descend(polytope_, -n, 0, -kInfinity).height;
+  }
+
+  const Polytope& polytope_;
+  const Vec3& p_;
+  double tie_;
+  PointDistance best_{kInfinity, Vec3::UnitZ(), Vec3::Zero(), 0};
+};
+
+/// The places of a face that could be nearest to p, at this height over it: its foot, else the nearest of every edge that
+/// p is beyond.
+void offer_face(const Polytope& polytope, std::uint32_t index, const Vec3& p, double height,
+                NearestPlace& nearest) {
   const ConvexHull::Face& face = polytope.faces[index];
   const auto loop = polytope.loop(face);
-  PointDistance best{kInfinity, face.normal, p, 0};
   bool inside = true;
   for (std::size_t i = 0; i < loop.size(); ++i) {
     const Vec3& tail = polytope.vertices[loop[i]];
     const Vec3& head = polytope.vertices[loop[i + 1 == loop.size() ? 0 : i + 1]];
     const Vec3 along = head - tail, d = p - tail;
-    if (along.cross(d).dot(face.normal) >= 0.0) continue;
+    if (along.cross(d).dot(face.normal) >= -nearest.tie() * along.norm()) continue;
     inside = false;
     const double length2 = along.squaredNorm();
     const double s = length2 > 0.0 ? std::clamp(along.dot(d) / length2, 0.0, 1.0) : 0.0;
-    const Vec3 foot = tail + s * along;
-    const double distance = (p - foot).norm();
-    if (distance < best.distance) {
-      best = {distance, direction_or(p - foot, face.normal), foot, mix_features(1, loop[i])};
-    }
+    const Vec3 foot = tail + s * along, apart = p - foot;
+    // Between its ends at right angles to the edge, which rounding has turned a short way from.
+    const Vec3 across = s > 0.0 && s < 1.0 ? Vec3(apart - along * (along.dot(apart) / length2)) : apart;
+    nearest.offer({apart.norm(), direction_or(across, face.normal), foot, mix_features(1, loop[i])});
   }
-  if (inside) best = {height, face.normal, p - height * face.normal, mix_features(0, index)};
-  return best;
+  if (inside) nearest.offer({height, face.normal, p - height * face.normal, mix_features(0, index)});
 }
 
 }  // namespace
@@ -148,6 +179,17 @@ bool is_over_face(const Polytope& polytope, std::uint32_t face, const Vec3& p) {
   return true;
 }
 
+double height_beside_face(const Polytope& polytope, std::uint32_t face, const Vec3& p) {
+  const auto loop = polytope.loop(polytope.faces[face]);
+  double height = -kInfinity;
+  for (std::size_t i = 0; i < loop.size(); ++i) {
+    const Vec3& tail = polytope.vertices[loop[i]];
+    const Vec3 along = polytope.vertices[loop[i + 1 == loop.size() ? 0 : i + 1]] - tail;
+    height = std::max(height, -along.cross(p - tail).dot(polytope.faces[face].normal) / along.norm());
+  }
+  return height;
+}
+
 PointDistance compute_distance(const Polytope& polytope, const Vec3& p, double enough) {
   double highest = -kInfinity;
   std::uint32_t nearest = 0;
@@ -156,16 +198,14 @@ PointDistance compute_distance(const Polytope& polytope, const Vec3& p, double e
     if (height > highest) highest = height, nearest = i;
   }
   const Vec3& normal = polytope.faces[nearest].normal;
-  PointDistance best{highest, normal, p - highest * normal, mix_features(0, nearest)};
-  if (highest <= 0.0 || highest > enough || is_over_face(polytope, nearest, p)) return best;
-  best.distance = kInfinity;
+  if (highest <= 0.0 || highest > enough || is_over_face(polytope, nearest, p))
+    return {highest, normal, p - highest * normal, mix_features(0, nearest)};
+  NearestPlace place(polytope, p);
   for (std::uint32_t i = 0; i < polytope.faces.size(); ++i) {
     const double height = polytope.faces[i].normal.dot(p) - polytope.faces[i].offset;
-    if (height <= 0.0 || height >= best.distance) continue;
-    const PointDistance candidate = closest_on_face(polytope, i, p, height);
-    if (candidate.distance < best.distance) best = candidate;
+    if (height > 0.0 && height < place.limit()) offer_face(polytope, i, p, height, place);
   }
-  return best;
+  return place.best();
 }
 
 }  // namespace tumble

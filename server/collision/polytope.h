@@ -57,8 +57,17 @@ std::uint32_t face_towards(const Polytope& polytope, const Vec3& d, std::uint32_
 /// Of the two faces of an edge, the one that looks along d more.
 std::uint32_t flatter_face(const Polytope& polytope, const ConvexHull::Edge& edge, const Vec3& d);
 
+/// A direction (of any length > 0) in the middle of those along which the edge `along` (tail to head) between two faces is
+/// furthest out: their sum, and what lies between them if they look opposite ways, as on a flat body.
+inline Vec3 outward_from_edge(const Vec3& along, const Vec3& left_normal, const Vec3& right_normal) {
+  return left_normal + right_normal + along.cross(left_normal - right_normal);
+}
+
 /// Whether the foot of p on the face's plane lies in the face.
 bool is_over_face(const Polytope& polytope, std::uint32_t face, const Vec3& p);
+
+/// How far the foot of p on the face's plane lies beside the face, by the lines of its edges [m]; < 0 inside.
+double height_beside_face(const Polytope& polytope, std::uint32_t face, const Vec3& p);
 
 struct PointDistance {
   double distance;  ///< < 0 inside [m].

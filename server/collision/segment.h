@@ -45,6 +45,26 @@ inline SegmentPair closest_points(const Segment& a, const Segment& b) {
   return {s, t, a.at(s), b.at(t)};
 }
 
+/// The direction between the closest points of two segments that are apart, `apart` from one to the other. Rounding has
+/// turned it by as much as it is short: it is taken at right angles to each segment that has its point between its ends.
+inline Vec3 direction_between(const Segment& a, const Segment& b, const SegmentPair& closest, const Vec3& apart) {
+  const bool inside_a = std::abs(closest.s_A) < 1.0, inside_b = std::abs(closest.s_B) < 1.0;
+  const auto across = [](const Vec3& d, const Segment& s) -> Vec3 {
+    return d - s.reach * (s.reach.dot(d) / s.reach.squaredNorm());
+  };
+  Vec3 direction = apart;
+  if (inside_a && inside_b) {
+    const Vec3 common = a.reach.cross(b.reach);
+    constexpr double kCrossing = 1e-6;  // sin^2
+    if (common.squaredNorm() > kCrossing * a.reach.squaredNorm() * b.reach.squaredNorm())
+      return common * (std::copysign(1.0, common.dot(apart)) / common.norm());
+  }
+  if (inside_a && a.reach.squaredNorm() > 0.0) direction = across(direction, a);
+  if (inside_b && b.reach.squaredNorm() > 0.0) direction = across(direction, b);
+  const double length = direction.norm();
+  return length > 0.0 ? Vec3(direction / length) : Vec3(apart.normalized());
+}
+
 /// Some unit vector at right angles to d; +x if d is zero.
 inline Vec3 perpendicular_to(const Vec3& d) {
   int least = 0;

@@ -26,6 +26,8 @@ constexpr int kNewtonSteps = 12;
 constexpr int kPivots = 12;
 /// A weight this little below 0 is 0: where four pieces meet, as between boxes and cones in line, three carry all of it.
 constexpr double kNoWeight = 1e-9;
+/// Three points seen along a direction span no triangle if it is this share of what their distances allow.
+constexpr double kNoArea = 1e-9;
 constexpr double kLongestStep = 0.3;  // [rad]
 /// Newton's method squares its error: a step this short is the last [rad].
 constexpr double kConverged = 1e-8;
@@ -252,9 +254,17 @@ bool Search::converge(CandidateDirection& candidate) const {
 }
 
 /// Takes a piece in that reaches further. Of four, the one is left out without which the ray along n passes best through
-/// the triangle of the others.
+/// the triangle of the others; of three in one plane with n, as round a common axis, the one on the same side of the ray.
 bool Search::include(CandidateDirection& c, const Reach& further) const {
   if (c.holds(further.pieces)) return false;
+  if (c.count == 2) {
+    const Vec3 k0 = point(c.pieces[0], c.n), edge = point(c.pieces[1], c.n) - k0, beside = further.k() - k0;
+    if (std::abs(c.n.dot(edge.cross(beside))) <= kNoArea * edge.norm() * beside.norm()) {
+      const Vec3 along = edge - c.n * c.n.dot(edge);
+      c.pieces[along.dot(further.k()) > 0.0 ? 1 : 0] = further.pieces;
+      return true;
+    }
+  }
   if (c.count < 3) {
     c.add(further.pieces);
     return true;
@@ -415,6 +425,7 @@ Separation Search::finish() {
   result.separation = -best_.h - rounding_;
   result.count = best_.count;
   result.pieces = best_.pieces;
+  result.exact = best_.optimal;
   result.lead = lead_;
   if (!beyond()) find_points(result);
   result.evaluations = evaluations_;

@@ -182,13 +182,14 @@ PlacedPair deep(RandomPose& random, const Shape& a, const Shape& b) {
   return {a, b, X_WA, X_WA * X_AB};
 }
 
+Vec3 pick_normal(RandomPose& random, const ConvexHull& hull) {
+  const double at = random.uniform(0.0, static_cast<double>(hull.faces.size()));
+  return hull.faces[std::min(static_cast<std::size_t>(at), hull.faces.size() - 1)].normal;
+}
+
 /// Some face of B lies on some face of A, tilted by 0 to 1e-3 rad.
 PlacedPair face_to_face(RandomPose& random, const HullPointer& a, const HullPointer& b) {
-  const auto pick = [&](const ConvexHull& hull) {
-    const double at = random.uniform(0.0, static_cast<double>(hull.faces.size()));
-    return hull.faces[std::min(static_cast<std::size_t>(at), hull.faces.size() - 1)].normal;
-  };
-  const Vec3 n_A = pick(*a), n_B = pick(*b);
+  const Vec3 n_A = pick_normal(random, *a), n_B = pick_normal(random, *b);
   constexpr std::array<double, 4> tilts = {0.0, 1e-9, 1e-6, 1e-3};
   const double tilt = tilts[static_cast<std::size_t>(random.uniform(0.0, 3.999))];
   const Vec3 axis = random.direction(), aside = 0.2 * random.direction();
@@ -225,6 +226,19 @@ PlacedPair near_miss(RandomPose& random, const Shape& a, const Shape& b) {
   PlacedPair pair = push_together(random, a, b, q, n, -gap);
   pair.margin = 0.05;
   return pair;
+}
+
+/// Two equal bodies lie face to face across a gap, their outlines off by 1e-9 to 1e-3 and tilted by up to 0.01 rad: what
+/// hangs over the other's edge is not over the face.
+PlacedPair hover(RandomPose& random, const Shape& shape, const Vec3& n) {
+  const Vec3 aside = random.direction() * random.log_uniform(1e-9, 1e-3);
+  const double tilt = random.uniform(0.0, 1.0) < 0.2 ? 0.0 : random.log_uniform(1e-9, 1e-2);
+  const double gap = random.log_uniform(1e-6, 2e-2);
+  const Quat q = turn(random.direction(), tilt);
+  const Vec3 top = support(shape, n), bottom = q * support(shape, q.conjugate() * -n);
+  const Vec3 p = (n.dot(top - bottom) + gap) * n + aside - aside.dot(n) * n;
+  const Pose X_WA = random.pose(10.0);
+  return {shape, shape, X_WA, X_WA * Pose{q, p}, 0.05};
 }
 
 template <typename MakeA, typename MakeB>
@@ -275,6 +289,14 @@ void add_hulls(std::vector<ContactClass>& classes) {
   add_near_miss(classes, "hull-hull, 32 vertices", 1000000, rock32, rock32);
   add_near_miss(classes, "hull-hull, parts", 1000000, designed, designed);
   add_near_miss(classes, "box-hull, 32 vertices", 1000000, box, rock32);
+  classes.push_back({"box-box", "lying, apart", 1000000, [](RandomPose& r) {
+                       const Box shape = random_box(r);
+                       return hover(r, shape, Vec3::Unit(static_cast<int>(r.uniform(0.0, 2.999))));
+                     }});
+  classes.push_back({"hull-hull, parts", "lying, apart", 1000000, [](RandomPose& r) {
+                       const HullPointer hull = parts().any(r);
+                       return hover(r, hull, pick_normal(r, *hull));
+                     }});
   add_shallow_and_deep(classes, "hull-hull, 32 vertices", 1000000, rock32, rock32);
   add_shallow_and_deep(classes, "hull-hull, 200 vertices", 200000, rock200, rock200);
   add_shallow_and_deep(classes, "hull-hull, parts", 1000000, designed, designed);

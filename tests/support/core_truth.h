@@ -105,29 +105,28 @@ class CoreTruth {
     for (const Core::Face& f : a_.faces) offer_axis(f.normal, 1);
     for (const Core::Face& f : b_.faces) offer_axis(-f.normal, 1);
     cross_edges(brute);
-    if (best_ <= 0 && !(a_.faces.empty() && b_.faces.empty())) return;
-    axes_.clear();
-    find_distance();
+    if (best_ > 0 || (a_.faces.empty() && b_.faces.empty())) find_distance();
   }
 
   /// Distance, or minus the least depth [m].
   Real separation() const { return best_ - a_.radius - b_.radius; }
   Real core_separation() const { return best_; }
   /// |n - the nearest of the axes that are best to within `tie` [m]|, times how well that axis is determined: the sine
-  /// between its edges, or the distance of the cores as a share of `size`.
+  /// between its edges, or, of the axis through the closest pair, the distance of the cores as a share of `size`.
   Real normal_error(const Vec3& n, Real tie, Real size) const {
     Real least = 4;
     for (const Axis& axis : axes_) {
       if (axis.separation < best_ - tie) continue;
-      const Real condition = apart_ ? std::min<Real>(1, best_ / size) : axis.sine;
-      least = std::min(least, (n.cast<Real>() - axis.n).norm() * condition);
+      const bool of_pair = apart_ && &axis == &axes_.back();
+      least = std::min(least, (n.cast<Real>() - axis.n).norm() *
+                                  (of_pair ? std::min<Real>(1, best_ / size) : axis.sine));
     }
     return least;
   }
   /// By all supports: a lower bound of the distance for any n.
   Real separation_along(const Vec3L& n) const { return core_separation_along(n) - a_.radius - b_.radius; }
   /// Closest pair against the plane across it; 0 but for rounding.
-  Real duality_gap() const { return apart_ ? best_ - core_separation_along(axes_[0].n) : 0; }
+  Real duality_gap() const { return apart_ ? best_ - core_separation_along(axes_.back().n) : 0; }
 
   /// How far outside of A (or B) p_A lies [m], by planes (a lower bound) or by the distance from the core.
   Real outside(const Core& core, const Vec3L& p) const {
@@ -223,6 +222,8 @@ class CoreTruth {
       for (const Core::Edge& f : b_.edges) offer_edges(e, f, best);
     }
     apart_ = true;
+    // Axes that are equal but for rounding are as good.
+    std::erase_if(axes_, [&](const Axis& axis) { return axis.separation < best.distance - kKept; });
     best_ = best.distance;
     const Vec3L d = best.p_b - best.p_a;
     axes_.push_back({best.distance > 0 ? Vec3L(d / best.distance) : Vec3L(Vec3L::UnitZ()), best_, 1});

@@ -104,18 +104,17 @@ class FaceClip {
   void cut_side(double half, double tolerance);
   std::uint32_t name_meeting(std::uint32_t edge, std::uint32_t side) const;
   const Loop& loop() const { return loops_[current_]; }
-  /// Of what is left or, if that is nothing, of the uncut face.
-  Corner lowest_corner() const {
+  /// Of what is left.
+  const Corner& lowest_corner() const {
     const auto end = loop().begin() + static_cast<std::ptrdiff_t>(count_);
-    const auto lower = [](const Corner& c, const Corner& d) { return c.p.z() < d.p.z(); };
-    return count_ > 0 ? *std::min_element(loop().begin(), end, lower) : lowest_;
+    return *std::min_element(loop().begin(), end,
+                             [](const Corner& c, const Corner& d) { return c.p.z() < d.p.z(); });
   }
 
   const BoxFacePlane& plane_;
   bool reference_is_a_;
   Vec3 middle_,
-      reach_;      ///< Of the uncut face; x, y and z of its corners differ from the middle's by no more.
-  Corner lowest_;  ///< Of the uncut face.
+      reach_;  ///< Of the uncut face; x, y and z of its corners differ from the middle's by no more.
   std::size_t count_ = 4, current_ = 0;
   std::array<Loop, 2> loops_;
 };
@@ -140,7 +139,6 @@ FaceClip::FaceClip(const BoxFacePlane& plane, bool reference_is_a, const BoxFace
   corners[1] = {middle_ + e1 - e2, names[second], edge_of(along2, second)};
   corners[2] = {middle_ + e1 + e2, names[second | bit2], edge_of(along1, second)};
   corners[3] = {middle_ - e1 + e2, names[first | bit2], edge_of(along2, first)};
-  lowest_ = e2.z() >= 0.0 ? corners[e1.z() >= 0.0 ? 0 : 1] : corners[e1.z() >= 0.0 ? 3 : 2];
 }
 
 void FaceClip::cut(double tolerance) {
@@ -201,8 +199,8 @@ Manifold FaceClip::make_manifold(const MiddleA& middle_A, const Vec3& normal_A, 
                                   {middle_A(corner.p), corner.p.z(), corner.name});
   };
   for (std::size_t i = 0; i < count_; ++i) add(loop()[i]);
-  if (manifold.count > 0 || !overlap) return manifold;
-  const Corner lowest = lowest_corner();
+  if (manifold.count > 0 || !overlap || count_ == 0) return manifold;
+  const Corner& lowest = lowest_corner();
   return single_point(normal_A, middle_A(lowest.p), std::min(lowest.p.z(), margin), margin, lowest.name);
 }
 

@@ -15,7 +15,6 @@ void ClipPolygon::add_vertex(const Vec3& p, std::uint32_t vertex, std::uint32_t 
     before.head = vertex;
     added.marks |= before.mark;
   }
-  if (count_ == 0 || p.z() < lowest_.p.z()) lowest_ = {p, name, mark};
   ++count_;
 }
 

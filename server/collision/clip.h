@@ -59,9 +59,9 @@ class ClipPolygon {
     return {vertex.p, vertex.name, vertex.marks};
   }
 
-  /// Everything up to the margin as manifold with normal_A (from A to B). If there is nothing although the bodies overlap,
-  /// by rounding, the lowest corner speaks for it: of what is left over the reference face, if that is also nothing, of the
-  /// uncut polygon. `middle_A(p)` is the point in A in the middle between p and the plane.
+  /// Everything up to the margin as manifold with normal_A (from A to B). If that is nothing although the bodies overlap, by
+  /// rounding, the lowest corner of what is left speaks for it. `middle_A(p)` is the point in A in the middle between p and
+  /// the plane.
   template <typename MiddleA>
   Manifold make_manifold(const MiddleA& middle_A, const Vec3& normal_A, bool overlap, double margin,
                          double merge) const {
@@ -70,7 +70,7 @@ class ClipPolygon {
       const Vertex& vertex = loops_[static_cast<std::size_t>(current_)][static_cast<std::size_t>(i)];
       if (vertex.p.z() <= margin) builder.add(middle_A(vertex.p), vertex.p.z(), vertex.name);
     }
-    if (builder.count() > 0 || !overlap) return builder.finish();
+    if (builder.count() > 0 || !overlap || count_ == 0) return builder.finish();
     const Corner lowest = lowest_corner();
     return single_point(normal_A, middle_A(lowest.p), std::min(lowest.p.z(), margin), margin, lowest.name);
   }
@@ -85,9 +85,9 @@ class ClipPolygon {
     std::uint32_t mark, marks;  ///< Of that edge; of all that meets in the vertex.
   };
   using Loop = std::array<Vertex, kCapacity>;
-  /// Of what is left or, if that is nothing, of the uncut polygon.
+  /// Of what is left.
   Corner lowest_corner() const {
-    Corner lowest = count_ > 0 ? corner(0) : lowest_;
+    Corner lowest = corner(0);
     for (int i = 1; i < count_; ++i) {
       if (corner(i).p.z() < lowest.p.z()) lowest = corner(i);
     }
@@ -98,7 +98,6 @@ class ClipPolygon {
 
   bool reference_is_a_;
   int count_ = 0;
-  Corner lowest_;
   int current_ = 0;  ///< Which of the two loops holds the polygon; the other one receives what a cut leaves.
   std::array<Loop, 2> loops_;
 };

@@ -1,6 +1,8 @@
 // Box against box in A's frame: the best of fifteen axes, then a manifold. See collide_box_box.h.
 #include "collision/collide_box_box.h"
 
+#include <cmath>
+
 #include "collision/box_axis.h"
 #include "collision/box_faces.h"
 #include "collision/corner_contact.h"
@@ -11,28 +13,53 @@
 namespace tumble {
 namespace {
 
-/// The edge of a box along axis `i` that reaches furthest along n, with its two corners.
+/// The edge of a box along axis `i` that reaches furthest along d, in the box's frame: its middle and its two corners.
 struct BoxEdge {
-  Segment segment;
+  Vec3 centre;
   std::uint32_t tail, head;
 };
-BoxEdge edge_along(const Vec3& h, const Mat3& R, const Vec3& centre, int i, const Vec3& n) {
-  BoxEdge edge{{centre, h[i] * R.col(i)}, 0, 1u << i};
-  for (const int k : {(i + 1) % 3, (i + 2) % 3}) {
-    const bool positive = n.dot(R.col(k)) >= 0.0;
-    edge.segment.centre += (positive ? h[k] : -h[k]) * R.col(k);
-    edge.tail |= static_cast<std::uint32_t>(positive) << k;
-  }
-  edge.head |= edge.tail;
+BoxEdge edge_along(const Vec3& h, int i, const Vec3& d) {
+  constexpr int kNext[] = {1, 2, 0, 1};
+  const int k = kNext[i], l = kNext[i + 1];
+  BoxEdge edge{Vec3::Zero(), 0, 0};
+  edge.centre[k] = std::copysign(h[k], d[k]);
+  edge.centre[l] = std::copysign(h[l], d[l]);
+  edge.tail = static_cast<std::uint32_t>(!std::signbit(d[k])) << k |
+              static_cast<std::uint32_t>(!std::signbit(d[l])) << l;
+  edge.head = edge.tail | 1u << i;
   return edge;
 }
 
+/// Edges of A and B that cross along an axis, in A's frame.
+struct CrossingEdges {
+  CrossingEdges(const BoxPair& pair, const BoxAxis& axis)
+      : edge_a(edge_along(pair.a, axis.i, axis.normal_A)),
+        edge_b(edge_along(pair.b, axis.j, pair.R.transpose() * -axis.normal_A)),
+        a{edge_a.centre, pair.a[axis.i] * Vec3::Unit(axis.i)},
+        b{pair.t + pair.R * edge_b.centre, pair.b[axis.j] * pair.R.col(axis.j)} {}
+  std::uint32_t name() const { return name_crossing(edge_a.tail, edge_a.head, edge_b.tail, edge_b.head); }
+
+  BoxEdge edge_a, edge_b;
+  Segment a, b;
+};
+
+/// sin^2 of the angle from which on edges cross in one point, whatever the tolerances.
+constexpr double kCrossing = 1e-2;
+
 Manifold cross_edges(const BoxPair& pair, const BoxAxis& axis, double margin) {
-  const BoxEdge a = edge_along(pair.a, Mat3::Identity(), Vec3::Zero(), axis.i, axis.normal_A);
-  const BoxEdge b = edge_along(pair.b, pair.R, pair.t, axis.j, -axis.normal_A);
+  const CrossingEdges edges(pair, axis);
+  // Where lines cross, a + s e_i and b + t r_j with e_i . r_j = cosine, their distance is the axis' separation.
+  const Vec3 d = edges.b.centre - edges.a.centre, along_b = pair.R.col(axis.j);
+  const double cosine = pair.R(axis.i, axis.j), sine2 = 1.0 - cosine * cosine, along = d.dot(along_b);
+  const double s = d[axis.i] - cosine * along, t = cosine * d[axis.i] - along;
+  if (sine2 > kCrossing && std::abs(s) <= pair.a[axis.i] * sine2 && std::abs(t) <= pair.b[axis.j] * sine2) {
+    Vec3 middle_A = 0.5 * (edges.a.centre + edges.b.centre + (t / sine2) * along_b);
+    middle_A[axis.i] += 0.5 * (s / sine2);
+    return single_point(axis.normal_A, middle_A, axis.separation, margin, edges.name());
+  }
   const ContactTolerance tolerance = ContactTolerance::of(std::min(pair.a.minCoeff(), pair.b.minCoeff()));
-  return make_segment_manifold({a.segment, 0.0}, {b.segment, 0.0}, axis.normal_A, margin, tolerance.merge,
-                               name_crossing(a.tail, a.head, b.tail, b.head));
+  return make_segment_manifold({edges.a, 0.0}, {edges.b, 0.0}, axis.normal_A, margin, tolerance.merge,
+                               edges.name());
 }
 
 Manifold make_manifold(const BoxPair& pair, const BoxAxis& axis, const BoxFace& face_a, const BoxFace& face_b,
@@ -43,10 +70,15 @@ Manifold make_manifold(const BoxPair& pair, const BoxAxis& axis, const BoxFace& 
   return clip_faces(pair, axis, face_a, face_b, axis.kind == BoxAxis::Kind::face_a || flat_a, margin);
 }
 
-/// How far the lowest corner of a contact along a face's normal lies beside that face.
+/// How far the lowest corner of a contact along a face's normal lies beside that face; how far edges miss each other.
 void measure_overhang(const BoxPair& pair, const BoxAxis& axis, const BoxFace& face_a, const BoxFace& face_b,
                       AxisContact& contact) {
-  if (axis.kind == BoxAxis::Kind::edges) return;
+  if (axis.kind == BoxAxis::Kind::edges) {
+    const CrossingEdges edges(pair, axis);
+    contact.overhang = distance_between(edges.a, edges.b) - axis.separation;
+    contact.tilt = 1.0;
+    return;
+  }
   const auto beside = [](const Vec3& p, const Vec3& h, int k) {
     return std::max(std::abs(p[(k + 1) % 3]) - h[(k + 1) % 3], std::abs(p[(k + 2) % 3]) - h[(k + 2) % 3]);
   };
@@ -69,17 +101,21 @@ Manifold touch_along(const BoxPair& pair, const BoxAxis& axis, const Pose& X_AB,
                      PairCache& cache) {
   const BoxFace face_a = BoxFace::towards(axis.normal_A);
   const BoxFace face_b = BoxFace::towards(pair.R.transpose() * -axis.normal_A);
-  AxisContact contact{make_manifold(pair, axis, face_a, face_b, margin), axis.separation,
-                      pair.a.norm() + pair.b.norm(), lie_face_to_face(face_a, face_b)};
+  Manifold manifold = make_manifold(pair, axis, face_a, face_b, margin);
+  AxisContact contact{manifold, axis.separation, pair.a.norm() + pair.b.norm(),
+                      lie_face_to_face(face_a, face_b)};
   if (contact.separation > 0.0 && contact.face_to_face) measure_overhang(pair, axis, face_a, face_b, contact);
-  if (touches_along_axis(contact)) return contact.manifold;
+  if (touches_along_axis(contact)) return manifold;
   const ClosestContact closest =
       contact_of_closest_points(contact, Box{pair.a}, Box{pair.b}, X_AB, margin, cache);
-  if (!closest.lying) return closest.manifold;
-  const BoxAxis across{closest.separation, closest.manifold.normal_A, axis.kind, axis.i, axis.j};
-  Manifold polygon = make_manifold(pair, across, face_a, face_b, margin);
-  set_deepest(polygon, closest.separation);
-  return polygon;
+  if (closest.lying) {
+    const BoxAxis across{closest.separation, closest.manifold.normal_A, axis.kind, axis.i, axis.j};
+    manifold = make_manifold(pair, across, face_a, face_b, margin);
+    set_deepest(manifold, closest.separation);
+  } else {
+    manifold = closest.manifold;
+  }
+  return manifold;
 }
 
 }  // namespace

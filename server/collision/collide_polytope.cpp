@@ -2,6 +2,8 @@
 // point. See collide_polytope.h.
 #include "collision/collide_polytope.h"
 
+#include <utility>
+
 #include "collision/clip.h"
 #include "collision/corner_contact.h"
 #include "collision/facet_search.h"
@@ -79,13 +81,19 @@ Manifold clip_faces(const PlacedFace& reference, const PlacedFace& incident, boo
   return polygon.make_manifold(middle_A, normal_A, facet.separation <= 0.0, margin, tolerance.merge);
 }
 
-Manifold cross_edges(const PolytopePair& pair, const Facet& facet, double margin) {
+/// The edges of A and B that cross, in A's frame.
+std::pair<Segment, Segment> crossing_edges(const PolytopePair& pair, const Facet& facet) {
   const ConvexHull::Edge &edge_a = pair.a.edges[facet.a], &edge_b = pair.b.edges[facet.b];
   const Vec3 &tail_a = pair.a.vertices[edge_a.tail], &head_a = pair.a.vertices[edge_a.head];
   const Vec3 tail_b = pair.R_AB * pair.b.vertices[edge_b.tail] + pair.p_AB;
   const Vec3 head_b = pair.R_AB * pair.b.vertices[edge_b.head] + pair.p_AB;
-  const Segment a{0.5 * (tail_a + head_a), 0.5 * (head_a - tail_a)};
-  const Segment b{0.5 * (tail_b + head_b), 0.5 * (head_b - tail_b)};
+  return {{0.5 * (tail_a + head_a), 0.5 * (head_a - tail_a)},
+          {0.5 * (tail_b + head_b), 0.5 * (head_b - tail_b)}};
+}
+
+Manifold cross_edges(const PolytopePair& pair, const Facet& facet, double margin) {
+  const ConvexHull::Edge &edge_a = pair.a.edges[facet.a], &edge_b = pair.b.edges[facet.b];
+  const auto [a, b] = crossing_edges(pair, facet);
   const double merge = ContactTolerance::of(std::min(a.reach.norm(), b.reach.norm())).merge;
   return make_segment_manifold({a, 0.0}, {b, 0.0}, facet.normal_A, margin, merge,
                                name_crossing(edge_a.tail, edge_a.head, edge_b.tail, edge_b.head));
@@ -96,9 +104,7 @@ struct FacePair {
   std::uint32_t a, b;
   double cosine_a, cosine_b;  ///< Of the angle to the axis.
 
-  bool are_flat() const {
-    return std::min(cosine_a, cosine_b) > ContactTolerance::kFlat;
-  }
+  bool are_flat() const { return std::min(cosine_a, cosine_b) > ContactTolerance::kFlat; }
   bool lie_face_to_face() const { return std::min(cosine_a, cosine_b) > ContactTolerance::kFaceToFace; }
 };
 
@@ -134,10 +140,15 @@ Manifold make_manifold(const PolytopePair& pair, const Facet& facet, const FaceP
                                       : clip_faces(b, a, false, facet, margin, face_to_face);
 }
 
-/// How far the lowest vertex of a contact along a face's normal lies beside that face.
+/// How far the lowest vertex of a contact along a face's normal lies beside that face; how far edges miss each other.
 void measure_overhang(const PolytopePair& pair, const Facet& facet, const FacePair& faces,
                       std::uint32_t vertex_a, std::uint32_t vertex_b, AxisContact& contact) {
-  if (facet.kind == Facet::Kind::edges) return;
+  if (facet.kind == Facet::Kind::edges) {
+    const auto [a, b] = crossing_edges(pair, facet);
+    contact.overhang = distance_between(a, b) - facet.separation;
+    contact.tilt = 1.0;
+    return;
+  }
   const Vec3 &normal_a = pair.a.faces[faces.a].normal, &normal_b = pair.b.faces[faces.b].normal;
   contact.tilt = (pair.R_AB * normal_b).cross(normal_a).norm();
   contact.overhang =
@@ -166,18 +177,21 @@ Manifold collide(const PolytopePair& pair, const Shape& a, const Shape& b, const
   if (separation > margin) return {};
   Facet facet = answer.facet;
   const FacePair faces = find_faces(pair, facet, cache.vertex_A, cache.vertex_B);
-  AxisContact contact{make_manifold(pair, facet, faces, margin), separation, pair.a.radius + pair.b.radius,
-                      faces.lie_face_to_face()};
+  Manifold manifold = make_manifold(pair, facet, faces, margin);
+  AxisContact contact{manifold, separation, pair.a.radius + pair.b.radius, faces.lie_face_to_face()};
   if (separation > 0.0 && contact.face_to_face)
     measure_overhang(pair, facet, faces, cache.vertex_A, cache.vertex_B, contact);
-  if (touches_along_axis(contact)) return contact.manifold;
+  if (touches_along_axis(contact)) return manifold;
   const ClosestContact closest = contact_of_closest_points(contact, a, b, X_AB, margin, cache);
-  if (!closest.lying) return closest.manifold;
-  facet.normal_A = closest.manifold.normal_A;
-  facet.separation = closest.separation;
-  Manifold polygon = make_manifold(pair, facet, faces, margin);
-  set_deepest(polygon, closest.separation);
-  return polygon;
+  if (closest.lying) {
+    facet.normal_A = closest.manifold.normal_A;
+    facet.separation = closest.separation;
+    manifold = make_manifold(pair, facet, faces, margin);
+    set_deepest(manifold, closest.separation);
+  } else {
+    manifold = closest.manifold;
+  }
+  return manifold;
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "collision/collide_curved.h"
 #include "collision/manifold_builder.h"
 #include "collision/narrow_phase.h"
 #include "math/rotation.h"
@@ -67,28 +68,15 @@ Manifold lie_on_triangle(const Shape& a, const PlacedTriangle& t, const Manifold
 
 }  // namespace
 
-HullPointer make_flat_hull(const SurfaceTriangle& t) {
-  ConvexHull hull;
-  hull.vertices.assign(t.corner.begin(), t.corner.end());
-  hull.loops = {0, 1, 2, 0, 2, 1};
-  const double offset = t.normal.dot(t.corner[0]);
-  hull.faces = {{t.normal, offset, 0, 3}, {-t.normal, -offset, 3, 3}};
-  for (ConvexHull::Face& face : hull.faces) face.width = compute_width(hull, face);
-  hull.edges = {{0, 1, 0, 1}, {1, 2, 0, 1}, {0, 2, 1, 0}};
-  hull.neighbour_offsets = {0, 2, 4, 6};
-  hull.neighbours = {1, 2, 0, 2, 0, 1};
-  hull.edges_around = {0, 2, 0, 1, 2, 1};
-  hull.centre = (t.corner[0] + t.corner[1] + t.corner[2]) / 3.0;
-  for (const Vec3& v : hull.vertices) hull.radius = std::max(hull.radius, v.norm());
-  return std::make_shared<const ConvexHull>(std::move(hull));
-}
-
 Manifold collide_triangle_hull(const Shape& a, const PlacedTriangle& t, double margin) {
   const double plane = t.normal.dot(t.corner[0]);
   const double lowest = t.normal.dot(support(a, -t.normal)) - plane;
   const double highest = t.normal.dot(support(a, t.normal)) - plane;
   if (lowest > margin || lowest + highest < 0.0) return {};
-  const Manifold met = ask(a, Pose{}, make_flat_hull(t), Pose{}, margin);
+  const TriangleFeatures flat(t.corner, t.normal);
+  const Mat3 identity = Mat3::Identity();
+  const Vec3 zero = Vec3::Zero();
+  const Manifold met = collide_pieces({a, identity, zero}, {flat.view(), identity, zero}, -t.normal, margin);
   if (met.count == 0) return {};
   const Vec3 c = -met.normal_A;
   if (same_direction(c, t.normal)) return lie_on_triangle(a, t, met, margin);

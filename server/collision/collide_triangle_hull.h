@@ -1,5 +1,5 @@
-// A triangle of a surface against any convex shape that is no polytope: as a flat hull it goes through the shape's own pair
-// functions, and what they say is kept only where the surface may push that way.
+// A triangle of a surface against any convex shape that is no polytope: as a flat body it goes through the search for
+// curved shapes, and what that says is kept only where the surface may push that way.
 #pragma once
 
 #include "collision/manifold.h"
@@ -9,8 +9,5 @@
 namespace tumble {
 
 Manifold collide_triangle_hull(const Shape& a, const PlacedTriangle& triangle, double margin);
-
-/// The triangle as a hull of two faces in the frame it is given in.
-HullPointer make_flat_hull(const SurfaceTriangle& triangle);
 
 }  // namespace tumble

@@ -103,24 +103,33 @@ struct CurvatureOf {
 }  // namespace
 
 ConvexPieces::ConvexPieces(const Shape& shape, const Mat3& R_AS, const Vec3& p_AS)
-    : shape_(shape), R_(R_AS), p_(p_AS), rounding_(std::visit(Rounding(), shape)) {}
+    : shape_(&shape), R_(R_AS), p_(p_AS), rounding_(std::visit(Rounding(), shape)) {}
+
+ConvexPieces::ConvexPieces(const Polytope& polytope, const Mat3& R_AS, const Vec3& p_AS)
+    : polytope_(polytope), R_(R_AS), p_(p_AS), rounding_(0.0) {}
 
 ConvexPieces::Point ConvexPieces::furthest(const Vec3& n_A) const {
   const Vec3 d = R_.transpose() * n_A;
-  const std::uint32_t piece = std::visit(PieceOf{d}, shape_);
-  return {R_ * std::visit(PointOf{d, piece}, shape_) + p_, piece};
+  if (shape_ == nullptr) {
+    const std::uint32_t vertex = descend(*polytope_, -d, 0, -kInfinity).vertex;
+    return {R_ * polytope_->vertices[vertex] + p_, vertex};
+  }
+  const std::uint32_t piece = std::visit(PieceOf{d}, *shape_);
+  return {R_ * std::visit(PointOf{d, piece}, *shape_) + p_, piece};
 }
 
 Vec3 ConvexPieces::point(std::uint32_t piece, const Vec3& n_A) const {
+  if (shape_ == nullptr) return R_ * polytope_->vertices[piece] + p_;
   const Vec3 d = R_.transpose() * n_A;
-  return R_ * std::visit(PointOf{d, piece}, shape_) + p_;
+  return R_ * std::visit(PointOf{d, piece}, *shape_) + p_;
 }
 
 Curvature ConvexPieces::curvature(std::uint32_t piece, const Vec3& n_A, const Vec3& u_A,
                                   const Vec3& v_A) const {
+  if (shape_ == nullptr) return {0.0, 0.0, 0.0};
   const Mat3 R_SA = R_.transpose();
   const Vec3 d = R_SA * n_A, u = R_SA * u_A, v = R_SA * v_A;
-  return std::visit(CurvatureOf{d, u, v, piece}, shape_);
+  return std::visit(CurvatureOf{d, u, v, piece}, *shape_);
 }
 
 }  // namespace tumble

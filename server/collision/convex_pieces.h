@@ -3,6 +3,8 @@
 // curvature radii. Spheres and capsules are a point and a segment, rounded. All in A's frame, lengths in [m].
 #pragma once
 
+#include <optional>
+
 #include "collision/polytope.h"
 #include "collision/shape.h"
 
@@ -21,6 +23,8 @@ class ConvexPieces {
  public:
   /// Not for half-spaces and surfaces. Keeps a reference to the shape.
   ConvexPieces(const Shape& shape, const Mat3& R_AS, const Vec3& p_AS);
+  /// Something with flat faces that is no shape of its own, as a triangle.
+  ConvexPieces(const Polytope& polytope, const Mat3& R_AS, const Vec3& p_AS);
 
   struct Point {
     Vec3 p_A;
@@ -36,14 +40,19 @@ class ConvexPieces {
   /// What lies around the core on all sides.
   double rounding() const { return rounding_; }
   /// Is its lowest, highest face across z a disc?
-  bool has_cap_below() const { return has_cap_above() || std::holds_alternative<Cone>(shape_); }
-  bool has_cap_above() const { return std::holds_alternative<Cylinder>(shape_); }
+  bool has_cap_below() const { return has_cap_above() || (shape_ && std::holds_alternative<Cone>(*shape_)); }
+  bool has_cap_above() const { return shape_ && std::holds_alternative<Cylinder>(*shape_); }
   const Mat3& R() const { return R_; }
   const Vec3& p() const { return p_; }
-  const Shape& shape() const { return shape_; }
+  /// No point is further from the origin of its frame, roundings included [m].
+  double radius() const { return shape_ ? bounding_radius(*shape_) : polytope_->radius; }
+  /// One of the two: null if it is the other.
+  const Shape* shape() const { return shape_; }
+  const Polytope* polytope() const { return polytope_ ? &*polytope_ : nullptr; }
 
  private:
-  const Shape& shape_;
+  const Shape* shape_ = nullptr;
+  std::optional<Polytope> polytope_;
   Mat3 R_;
   Vec3 p_;
   double rounding_;

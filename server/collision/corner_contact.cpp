@@ -4,6 +4,7 @@
 #include "collision/distance.h"
 #include "collision/feature_name.h"
 #include "collision/manifold_builder.h"
+#include "math/rotation.h"
 
 namespace tumble {
 namespace {
@@ -25,6 +26,7 @@ bool hangs_over(const AxisContact& contact) {
 }  // namespace
 
 bool touches_along_axis(AxisContact& contact) {
+  if (contact.manifold.count == 0) return false;
   const double rounding = kAxisRounding * contact.size;
   const bool apart = contact.separation >= -rounding;
   if (apart && least_separation(contact.manifold) > contact.separation + rounding) return false;
@@ -52,8 +54,9 @@ ClosestContact contact_of_closest_points(const AxisContact& along_axis, const Sh
   const bool lying = along_axis.face_to_face &&
                      distance.axis_A.dot(manifold.normal_A) > ContactTolerance::kFaceToFace &&
                      least_separation(manifold) <= distance.upper + kLying * along_axis.size;
-  return {single_point(distance.axis_A, middle_A, distance.upper, margin, name_corners()), lying,
-          distance.upper};
+  // The planes are known to round-off; the points, where edges run nearly side by side, only to the root of it.
+  const double apart = separation_along(a, b, rotation_matrix(X_AB.q), X_AB.p, distance.axis_A);
+  return {single_point(distance.axis_A, middle_A, apart, margin, name_corners()), lying, apart};
 }
 
 }  // namespace tumble

@@ -11,17 +11,18 @@ namespace tumble {
 
 /// A manifold made along the axis that separates most.
 struct AxisContact {
-  Manifold manifold;
+  Manifold& manifold;
   double separation;  ///< Along the axis [m].
   double size;        ///< The bodies' radii together [m].
   /// Clipped with the tolerance for bodies that lie face to face: the lowest point may be beside the reference face by that.
   bool face_to_face = false;
   double overhang = 0.0;  ///< By this [m]. Known of bodies that are apart along a face's normal.
-  double tilt = 0.0;      ///< Sine of the angle between the faces; where 0 it does not matter where the lowest point is.
+  double tilt =
+      0.0;  ///< Sine of the angle between the faces; where 0 it does not matter where the lowest point is.
 };
 
 /// Overlapping, or if the lowest point is as near as the axis says, this point gets the separation: true. False: the axis
-/// is not the whole truth, ask for the closest points.
+/// is not the whole truth, or rounding left no point over the face, ask for the closest points.
 bool touches_along_axis(AxisContact& contact);
 
 /// What the closest points say where it does not.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 
 #include "collision/manifold.h"
 
@@ -34,7 +35,9 @@ inline int add_or_merge(ManifoldPoint* points, int count, double merge, const Ma
   constexpr double kDeeper = 1e-3;
   for (int i = 0; i < count; ++i) {
     ManifoldPoint& kept = points[i];
-    if ((kept.p_A - point.p_A).squaredNorm() >= merge * merge) continue;
+    const Vec3 apart = kept.p_A - point.p_A;
+    if (std::abs(apart.x()) >= merge || std::abs(apart.y()) >= merge) continue;  // most
+    if (apart.squaredNorm() >= merge * merge) continue;
     if (point.separation < kept.separation - kDeeper * merge) kept.p_A = point.p_A;
     kept.separation = std::min(kept.separation, point.separation);
     return count;

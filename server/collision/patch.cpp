@@ -295,7 +295,9 @@ Manifold collect(const PatchContact& contact, double width, double margin, AddPo
 
 Patch patch_towards(const ConvexPieces& shape, const Vec3& n_A) {
   const Vec3 d = shape.R().transpose() * n_A;
-  Patch patch = std::visit(PatchOf{d}, shape.shape());
+  const PatchOf part{d};
+  Patch patch =
+      shape.shape() != nullptr ? std::visit(part, *shape.shape()) : part.of_polytope(*shape.polytope());
   for (std::size_t i = 0; i < static_cast<std::size_t>(patch.count); ++i) {
     patch.corners[i] = shape.R() * patch.corners[i] + shape.p();
   }

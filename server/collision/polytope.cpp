@@ -54,6 +54,12 @@ constexpr std::array<std::uint32_t, 24> kBoxNeighbours = box_neighbours(),
                                         kBoxEdgesAround = box_edges_around();
 constexpr std::array<ConvexHull::Edge, 12> kBoxEdges = box_edges();
 
+constexpr std::array<std::uint32_t, 6> kTriangleLoops = {0, 1, 2, 0, 2, 1};
+constexpr std::array<ConvexHull::Edge, 3> kTriangleEdges = {{{0, 1, 0, 1}, {1, 2, 0, 1}, {0, 2, 1, 0}}};
+constexpr std::array<std::uint32_t, 4> kTriangleNeighbourOffsets = {0, 2, 4, 6};
+constexpr std::array<std::uint32_t, 6> kTriangleNeighbours = {1, 2, 0, 2, 0, 1},
+                                       kTriangleEdgesAround = {0, 2, 0, 1, 2, 1};
+
 /// Share of the sizes below which two distances are equal.
 constexpr double kDistanceTie = 1e-15;
 
@@ -127,6 +133,20 @@ BoxFeatures::BoxFeatures(const Box& box) : radius_(box.half_extents.norm()) {
 Polytope BoxFeatures::view() const {
   return {vertices_,      kBoxLoops,       faces_,       kBoxEdges, kBoxNeighbourOffsets,
           kBoxNeighbours, kBoxEdgesAround, Vec3::Zero(), radius_};
+}
+
+TriangleFeatures::TriangleFeatures(const std::array<Vec3, 3>& corners, const Vec3& normal)
+    : vertices_(corners), centre_((corners[0] + corners[1] + corners[2]) / 3.0) {
+  const Vec3 u = corners[1] - corners[0], v = corners[2] - corners[0];
+  const double width = u.cross(v).norm() / (u.norm() + v.norm() + (v - u).norm());
+  const double offset = normal.dot(corners[0]);
+  faces_ = {{{normal, offset, 0, 3, width}, {-normal, -offset, 3, 3, width}}};
+  for (const Vec3& corner : corners) radius_ = std::max(radius_, corner.norm());
+}
+
+Polytope TriangleFeatures::view() const {
+  return {vertices_,           kTriangleLoops,       faces_,  kTriangleEdges, kTriangleNeighbourOffsets,
+          kTriangleNeighbours, kTriangleEdgesAround, centre_, radius_};
 }
 
 Polytope view_of(const ConvexHull& hull) {

@@ -42,6 +42,21 @@ class BoxFeatures {
   std::array<ConvexHull::Face, 6> faces_;
 };
 
+/// A triangle (corners counter-clockwise about its unit normal) as a body without thickness: face 0 looks along the normal.
+class TriangleFeatures {
+ public:
+  TriangleFeatures(const std::array<Vec3, 3>& corners, const Vec3& normal);
+  TriangleFeatures(const TriangleFeatures&) = delete;  // views point into this object
+  TriangleFeatures& operator=(const TriangleFeatures&) = delete;
+  Polytope view() const;
+
+ private:
+  std::array<Vec3, 3> vertices_;
+  std::array<ConvexHull::Face, 2> faces_;
+  Vec3 centre_;
+  double radius_ = 0.0;
+};
+
 Polytope view_of(const ConvexHull& hull);
 
 /// Vertex with the least height along d, by descent over edges from vertex `start`. Stops at once below `enough`: the

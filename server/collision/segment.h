@@ -45,9 +45,15 @@ inline SegmentPair closest_points(const Segment& a, const Segment& b) {
   return {s, t, a.at(s), b.at(t)};
 }
 
+inline double distance_between(const Segment& a, const Segment& b) {
+  const SegmentPair closest = closest_points(a, b);
+  return (closest.p_B - closest.p_A).norm();
+}
+
 /// The direction between the closest points of two segments that are apart, `apart` from one to the other. Rounding has
 /// turned it by as much as it is short: it is taken at right angles to each segment that has its point between its ends.
-inline Vec3 direction_between(const Segment& a, const Segment& b, const SegmentPair& closest, const Vec3& apart) {
+inline Vec3 direction_between(const Segment& a, const Segment& b, const SegmentPair& closest,
+                              const Vec3& apart) {
   const bool inside_a = std::abs(closest.s_A) < 1.0, inside_b = std::abs(closest.s_B) < 1.0;
   const auto across = [](const Vec3& d, const Segment& s) -> Vec3 {
     return d - s.reach * (s.reach.dot(d) / s.reach.squaredNorm());

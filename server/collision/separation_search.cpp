@@ -21,14 +21,14 @@ constexpr double kReachRounding = 1e-14;
 constexpr double kFlatCurvature = 1e-13, kLevelSlope = 1e-11;
 /// ... and an optimum may bend down by this much along a level direction.
 constexpr double kBendsDown = 1e-9;
-constexpr int kNewtonSteps = 12;
+constexpr int kNewtonSteps = 20;
 /// Pieces exchanged on the way to one optimum.
 constexpr int kPivots = 12;
 /// A weight this little below 0 is 0: where four pieces meet, as between boxes and cones in line, three carry all of it.
 constexpr double kNoWeight = 1e-9;
 /// Three points seen along a direction span no triangle if it is this share of what their distances allow.
 constexpr double kNoArea = 1e-9;
-constexpr double kLongestStep = 0.3;  // [rad]
+constexpr double kLongestStep = 0.3, kLeap = 0.2;  // [rad]
 /// Newton's method squares its error: a step this short is the last [rad].
 constexpr double kConverged = 1e-8;
 /// cos of 0.35 rad: how far around an optimum a positive curvature at both ends says there is none in between.
@@ -70,7 +70,7 @@ class Search {
         b_(b),
         rounding_(a.rounding() + b.rounding()),
         enough_(enough),
-        size_(bounding_radius(a.shape()) + bounding_radius(b.shape())),
+        size_(a.radius() + b.radius()),
         hull_(size_) {}
 
   Separation run(const Vec3& guess) {
@@ -108,6 +108,7 @@ class Search {
   bool start(const Vec3& guess);
   void expand();
   bool explains(const DifferenceHull::Face& face, const Reach& reach) const;
+  bool is_furthest(const CandidateDirection& candidate) const;
   bool converge(CandidateDirection& candidate) const;
   enum class Ending { nowhere, same_optimum, better_optimum };
   Ending polish(CandidateDirection candidate);
@@ -152,11 +153,12 @@ bool Search::start(const Vec3& guess) {
   return hull_.start(corners);
 }
 
-/// To the minimum where the curve bends up. Where it doesn't, downhill; and not at all where one place is as good as the
-/// next, as all round a common axis.
+/// To the minimum where the curve bends up. Where it doesn't, downhill, from the very top to either side; and not at all
+/// where one place is as good as the next, as all round a common axis.
 double Search::newton_step(double slope, double second) const {
   if (second > kFlatCurvature * size_) return std::clamp(-slope / second, -kLongestStep, kLongestStep);
-  return std::abs(slope) <= kLevelSlope * size_ ? 0.0 : -std::copysign(kLongestStep, slope);
+  if (std::abs(slope) > kLevelSlope * size_) return -std::copysign(kLongestStep, slope);
+  return second < -kBendsDown * size_ ? kLongestStep : 0.0;
 }
 
 /// Minimum of a smooth piece on the sphere of directions: gradient k - t n, Hessian W - t across n.
@@ -240,7 +242,13 @@ std::array<double, 3> Search::weights(const CandidateDirection& c) const {
   return {1.0 - w1 - w2, w1, w2};
 }
 
-/// Newton's method on the candidate's pieces; false if it leads nowhere.
+/// Whether no other pieces reach further along the candidate's direction.
+bool Search::is_furthest(const CandidateDirection& candidate) const {
+  return candidate.holds({a_.furthest(candidate.n).piece, b_.furthest(-candidate.n).piece});
+}
+
+/// Newton's method on the candidate's pieces; false if it leads nowhere. On a ridge it stops where a leap has come to
+/// other pieces: their corner may be the optimum, and the ridge's own lie far behind it.
 bool Search::converge(CandidateDirection& candidate) const {
   for (int i = 0; i < kNewtonSteps; ++i) {
     const Vec3 before = candidate.n;
@@ -248,7 +256,9 @@ bool Search::converge(CandidateDirection& candidate) const {
                       : candidate.count == 2 ? step_on_ridge(candidate)
                                              : step_to_face(candidate);
     if (!good || !candidate.n.allFinite()) return false;
-    if ((candidate.n - before).squaredNorm() < kConverged * kConverged) return true;
+    const double turned2 = (candidate.n - before).squaredNorm();
+    if (turned2 < kConverged * kConverged) return true;
+    if (candidate.count == 2 && turned2 > kLeap * kLeap && !is_furthest(candidate)) return true;
   }
   return false;
 }

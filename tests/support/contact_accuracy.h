@@ -51,9 +51,11 @@ inline void judge(const PlacedPair& pair, const Manifold& m, const CoreTruth& tr
   const double size = size_of(pair);
   const Real round_off = 1e-13L * size, separation = truth.separation();
   ++figures.queries;
-  // The axis of a closest pair is known to the rounding of its points over their distance.
-  figures.bad_truth += std::abs(truth.duality_gap()) >
-                       1e-17L * size * (1 + size / std::max<Real>(1e-15L, truth.core_separation()));
+  // The axis of a closest pair is known to the rounding of its points over their distance, and a foot on a face to what
+  // its corners lie beside one plane.
+  figures.bad_truth +=
+      std::abs(truth.duality_gap()) >
+      (1e-17L * size + truth.unevenness()) * (1 + size / std::max<Real>(1e-15L, truth.core_separation()));
   if (m.count == 0) {
     figures.missed += separation < pair.margin - round_off;
     return;

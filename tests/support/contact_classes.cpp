@@ -228,11 +228,11 @@ PlacedPair near_miss(RandomPose& random, const Shape& a, const Shape& b) {
   return pair;
 }
 
-/// Two equal bodies lie face to face across a gap, their outlines off by 1e-9 to 1e-3 and tilted by up to 0.01 rad: what
-/// hangs over the other's edge is not over the face.
+/// Two equal bodies lie face to face across a gap, their outlines off by 1e-6 to 1e-3 m and, most of them, tilted by 1e-7
+/// to 1e-2 rad: what hangs over the other's edge is not over the face.
 PlacedPair hover(RandomPose& random, const Shape& shape, const Vec3& n) {
-  const Vec3 aside = random.direction() * random.log_uniform(1e-9, 1e-3);
-  const double tilt = random.uniform(0.0, 1.0) < 0.2 ? 0.0 : random.log_uniform(1e-9, 1e-2);
+  const Vec3 aside = random.direction() * random.log_uniform(1e-6, 1e-3);
+  const double tilt = random.uniform(0.0, 1.0) < 0.2 ? 0.0 : random.log_uniform(1e-7, 1e-2);
   const double gap = random.log_uniform(1e-6, 2e-2);
   const Quat q = turn(random.direction(), tilt);
   const Vec3 top = support(shape, n), bottom = q * support(shape, q.conjugate() * -n);

@@ -118,8 +118,8 @@ class CoreTruth {
     for (const Axis& axis : axes_) {
       if (axis.separation < best_ - tie) continue;
       const bool of_pair = apart_ && &axis == &axes_.back();
-      least = std::min(least, (n.cast<Real>() - axis.n).norm() *
-                                  (of_pair ? std::min<Real>(1, best_ / size) : axis.sine));
+      least = std::min(
+          least, (n.cast<Real>() - axis.n).norm() * (of_pair ? std::min<Real>(1, best_ / size) : axis.sine));
     }
     return least;
   }
@@ -127,6 +127,17 @@ class CoreTruth {
   Real separation_along(const Vec3L& n) const { return core_separation_along(n) - a_.radius - b_.radius; }
   /// Closest pair against the plane across it; 0 but for rounding.
   Real duality_gap() const { return apart_ ? best_ - core_separation_along(axes_.back().n) : 0; }
+
+  /// How far the corners of a face lie beside its plane [m].
+  Real unevenness() const {
+    Real worst = 0;
+    for (const Core* core : {&a_, &b_}) {
+      for (const Core::Face& face : core->faces) {
+        for (const Vec3L& v : face.loop) worst = std::max(worst, std::abs(face.normal.dot(v - face.loop[0])));
+      }
+    }
+    return worst;
+  }
 
   /// How far outside of A (or B) p_A lies [m], by planes (a lower bound) or by the distance from the core.
   Real outside(const Core& core, const Vec3L& p) const {
@@ -246,7 +257,13 @@ class CoreTruth {
     const Vec3L u = e.head - e.tail, v = f.head - f.tail, w = e.tail - f.tail;
     const Real uu = u.dot(u), uv = u.dot(v), vv = v.dot(v), cross = u.cross(v).squaredNorm();
     if (!(cross > 0)) return;
-    const Real s = (uv * v.dot(w) - vv * u.dot(w)) / cross, t = (uu * v.dot(w) - uv * u.dot(w)) / cross;
+    // Edges nearly side by side lose digits here: what is left of the equations is solved again.
+    Real s = 0, t = 0;
+    for (int round = 0; round < 3; ++round) {
+      const Vec3L r = w + s * u - t * v;
+      s += (uv * v.dot(r) - vv * u.dot(r)) / cross;
+      t += (uu * v.dot(r) - uv * u.dot(r)) / cross;
+    }
     if (s > 0 && s < 1 && t > 0 && t < 1) best.offer(e.tail + s * u, f.tail + t * v);
   }
   static Real point_core_distance(const Core& core, const Vec3L& p) {

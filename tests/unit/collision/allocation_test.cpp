@@ -7,6 +7,7 @@
 #include "allocation_counter.h"
 #include "collision/narrow_phase.h"
 #include "sample_hulls.h"
+#include "support/surface_meshes.h"
 
 namespace {
 std::uint64_t allocations = 0;
@@ -35,19 +36,28 @@ namespace {
 
 TEST(Allocation, NoQueryAllocates) {
   RandomPose random(61);
-  const std::vector<Shape> shapes = {HalfSpace{}, Sphere{0.4}, Capsule{0.3, 0.6}, Box{Vec3(0.5, 0.3, 0.7)},
-                                     random_hull(random, 16, Vec3(0.6, 0.5, 0.7))};
+  const std::vector<Shape> shapes = {HalfSpace{},
+                                     Sphere{0.4},
+                                     Capsule{0.3, 0.6},
+                                     Box{Vec3(0.5, 0.3, 0.7)},
+                                     random_hull(random, 16, Vec3(0.6, 0.5, 0.7)),
+                                     Cylinder{0.4, 0.5},
+                                     Cone{0.4, 0.5},
+                                     Ellipsoid{Vec3(0.5, 0.4, 0.6)},
+                                     flat_mesh(1, 4.0, false)};
+  const std::size_t count = shapes.size();
   NarrowPhaseCounters counters;
   const std::uint64_t before = allocation_count();
-  for (int i = 0; i < 5000; ++i) {
-    const Shape& a = shapes[static_cast<std::size_t>(i % 5)];
-    const Shape& b = shapes[static_cast<std::size_t>(i / 5 % 5)];
+  for (std::size_t i = 0; i < 5000; ++i) {
+    const Shape& a = shapes[i % count];
+    const Shape& b = shapes[i / count % count];
     const Pose X_WA = random.pose(0.7), X_WB = random.pose(0.7);
     PairCache cache;
     for (int again = 0; again < 2; ++again) collide(a, X_WA, b, X_WB, 0.05, {}, cache, counters);
   }
   EXPECT_EQ(allocation_count(), before);
   EXPECT_GT(counters.exact, 1000u);
+  EXPECT_GT(counters.triangles, 500u);
 }
 
 }  // namespace

@@ -4,10 +4,50 @@
 #include <gtest/gtest.h>
 
 #include "collision/narrow_phase.h"
+#include "first_query.h"
 #include "sample_hulls.h"
+#include "support/core_truth.h"
 
 namespace tumble::test {
 namespace {
+
+HullPointer flat_triangle(const std::array<Vec3, 3>& corners, const Vec3& normal) {
+  const TriangleFeatures features(corners, normal);
+  const Polytope flat = features.view();
+  ConvexHull hull;
+  hull.vertices.assign(flat.vertices.begin(), flat.vertices.end());
+  hull.loops.assign(flat.loops.begin(), flat.loops.end());
+  hull.faces.assign(flat.faces.begin(), flat.faces.end());
+  hull.edges.assign(flat.edges.begin(), flat.edges.end());
+  hull.neighbour_offsets.assign(flat.neighbour_offsets.begin(), flat.neighbour_offsets.end());
+  hull.neighbours.assign(flat.neighbours.begin(), flat.neighbours.end());
+  hull.edges_around.assign(flat.edges_around.begin(), flat.edges_around.end());
+  hull.centre = flat.centre;
+  hull.radius = flat.radius;
+  return std::make_shared<const ConvexHull>(std::move(hull));
+}
+
+/// The two normals at an edge look opposite ways: their sum says nothing of where out is.
+TEST(FlatHull, IsTouchedAtItsEdges) {
+  const Shape flat = flat_triangle({Vec3(-0.5, -0.4, 0), Vec3(0.6, -0.3, 0), Vec3(0, 0.7, 0)}, Vec3::UnitZ());
+  RandomPose random(17);
+  int contacts = 0;
+  for (int i = 0; i < 3000; ++i) {
+    const Shape body = i % 3 == 0   ? Shape(Capsule{random.uniform(0.02, 0.3), random.uniform(0.1, 0.6)})
+                       : i % 3 == 1 ? Shape(Box{random.vector(0.1, 0.5)})
+                                    : Shape(random_hull(random, 10, Vec3(0.4, 0.3, 0.5)));
+    const Pose X_WB = random.pose(0.6);
+    const Manifold m = query(body, X_WB, flat, Pose{}, 0.0);
+    const CoreTruth truth(body, X_WB, flat, Pose{}, true);
+    const double separation = static_cast<double>(truth.separation());
+    if (std::abs(separation) < 1e-14) continue;
+    ASSERT_EQ(m.count > 0, separation < 0.0) << i << " " << separation;
+    if (m.count == 0) continue;
+    ++contacts;
+    EXPECT_NEAR(least_separation(m), separation, 1e-14) << i;  // measured 7e-16
+  }
+  EXPECT_GT(contacts, 1000);
+}
 
 TEST(HullHull, MemoryOfThePastChangesNothing) {
   RandomPose random(5);

@@ -1,4 +1,4 @@
-// A triangle of a surface against sphere, capsule, box and hull. Reference: a box, whose surface as triangles must give the
+// A triangle of a surface against every convex shape. Reference: a box, whose surface as triangles must give the
 // contacts that the box gives as a solid.
 #include <gtest/gtest.h>
 
@@ -51,7 +51,10 @@ std::vector<Body> bodies() {
   return {{"sphere", Sphere{0.3}, 0.3},
           {"capsule", Capsule{0.2, 0.3}, 0.5},
           {"box", Box{Vec3(0.4, 0.3, 0.2)}, 0.54},
-          {"hull", random_hull(random, 16, Vec3(0.4, 0.3, 0.3)), 0.4}};
+          {"hull", random_hull(random, 16, Vec3(0.4, 0.3, 0.3)), 0.4},
+          {"cylinder", Cylinder{0.3, 0.25}, 0.39},
+          {"cone", Cone{0.3, 0.3}, 0.42},
+          {"ellipsoid", Ellipsoid{Vec3(0.4, 0.3, 0.25)}, 0.4}};
 }
 
 /// Distance along d from the origin at which `body` and `solid` just touch.

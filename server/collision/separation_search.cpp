@@ -33,6 +33,8 @@ constexpr double kLongestStep = 0.3, kLeap = 0.2;  // [rad]
 constexpr double kConverged = 1e-8;
 /// cos of 0.35 rad: how far around an optimum a positive curvature at both ends says there is none in between.
 constexpr double kBasin = 0.94;
+/// Share of the size by which the polytope may lie inside the shapes where its points still say where they meet.
+constexpr double kCoarse = 1e-6;
 /// cos of 1e-5 rad: two searches that end so near each other ended at the same optimum.
 constexpr double kSameDirection = 1.0 - 5e-11;
 
@@ -409,6 +411,7 @@ void Search::find_points(Separation& result) const {
   }
   result.p_A = result.p_B = Vec3::Zero();
   if (best_.optimal) {
+    result.exact = true;
     const std::array<double, 3> w = weights(best_);
     for (std::size_t i = 0; i < static_cast<std::size_t>(best_.count); ++i) {
       result.p_A += w[i] * a_.point(best_.pieces[i].a, best_.n);
@@ -423,8 +426,11 @@ void Search::find_points(Separation& result) const {
     result.p_B += face.weights[i] * (corner.p_A - corner.k);
   }
   // The polytope lies inside the difference: out to the planes that touch the shapes.
-  result.p_A += best_.n.dot(a_.furthest(best_.n).p_A - result.p_A) * best_.n;
-  result.p_B += best_.n.dot(b_.furthest(-best_.n).p_A - result.p_B) * best_.n;
+  const double out_a = best_.n.dot(a_.furthest(best_.n).p_A - result.p_A),
+               out_b = best_.n.dot(b_.furthest(-best_.n).p_A - result.p_B);
+  result.p_A += out_a * best_.n;
+  result.p_B += out_b * best_.n;
+  result.exact = std::max(std::abs(out_a), std::abs(out_b)) <= kCoarse * size_;
 }
 
 Separation Search::finish() {
@@ -435,7 +441,6 @@ Separation Search::finish() {
   result.separation = -best_.h - rounding_;
   result.count = best_.count;
   result.pieces = best_.pieces;
-  result.exact = best_.optimal;
   result.lead = lead_;
   if (!beyond()) find_points(result);
   result.evaluations = evaluations_;

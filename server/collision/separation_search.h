@@ -19,8 +19,8 @@ struct Separation {
   Vec3 normal_A = Vec3::UnitZ();  ///< Unit, from A to B.
   double separation = 0.0;        ///< Along the normal, by true supports [m].
   Vec3 p_A, p_B;  ///< The points of the cores of A and B that are nearest, or deepest, in A's frame.
-  /// The pieces below are known to meet there. Else the points are known only as well as the search's tolerance tells
-  /// them from others: where shapes of very different size touch, not at all.
+  /// They are where the shapes meet. Else the search ended before it knew more than the depth: where shapes of very
+  /// different size touch, or all directions round an axis are nearly as good.
   bool exact = false;
   /// Pieces that are furthest along the normal: one where the difference is smooth, two on its ridges, three on faces.
   int count = 0;

@@ -6,7 +6,7 @@
 `stream` is stream.py, run in a network namespace of its own; `error` is error_curves.py: minutes, with --long
 hours. Where valgrind is installed, bench_contacts is also run under
 callgrind for the instructions of one query: other than times they hardly differ between machines. Beside bench_NAME a
-program NAME_accuracy may print a Markdown table of its own; its first argument is the share of its full size to run,
+program NAME_accuracy... may print a Markdown table of its own; its first argument is the share of its full size to run,
 TUMBLE_SHARE or 0.001. A script NAME_curves.py runs it instead, if there is one, and writes what it draws beside the
 programs.
 """
@@ -119,9 +119,9 @@ def main():
         if path.name == "bench_contacts" and shutil.which("valgrind"):
             add_instructions(path, report)
         sections.append(f"## {path.name}\n{table(report)}")
-        accuracy = path.with_name(path.name.removeprefix("bench_") + "_accuracy")
-        if accuracy.is_file():
-            sections.append(f"## {accuracy.name}\n{own_table(accuracy)}")
+        for accuracy in sorted(path.parent.glob(path.name.removeprefix("bench_") + "_accuracy*")):
+            if accuracy.is_file():
+                sections.append(f"## {accuracy.name}\n{own_table(accuracy)}")
     if not wanted or "stream" in wanted:
         sections.append(f"## stream\n{stream_table(build)}")
     if not wanted or "error" in wanted:

@@ -55,7 +55,7 @@ class EveryCurvedPair : public ::testing::TestWithParam<Types> {
   int queries_ = 0, reached_ = 0;  ///< How often the reference itself finds what is there.
 };
 
-// 60 poses a pair and kind; tests/bench/accuracy_curved runs any number.
+// 60 poses a pair and kind; tests/bench/contacts_accuracy_curved runs any number.
 TEST_P(EveryCurvedPair, SeparatesAsMuchAsAnyDirection) {
   RandomPose random(static_cast<unsigned>(100 + 10 * GetParam().a + GetParam().b));
   for (int i = 0; i < 60; ++i) {

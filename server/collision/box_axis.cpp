@@ -48,7 +48,8 @@ bool is_proven(const BoxPair& pair, const BoxAxis& axis) {
 }
 
 /// Separation along n = e_i x r_j / length, with |n . e_i| and |n . r_j| (zero but for rounding) counted if `honest`.
-BoxAxis evaluate_edge_axis(const BoxPair& pair, int i, int j, double length, bool honest) {
+template <int i, int j>
+BoxAxis evaluate_edge_axis(const BoxPair& pair, double length, bool honest) {
   const Vec3 n = Vec3::Unit(i).cross(pair.R.col(j)) / length;
   const double centre = n.dot(pair.t);
   double extents = 0.0;
@@ -71,15 +72,17 @@ template <int i, int j>
 void try_edge_axis(const BoxPair& pair, double at_least, BoxAxis& best) {
   constexpr int i1 = (i + 1) % 3, i2 = (i + 2) % 3, j1 = (j + 1) % 3, j2 = (j + 2) % 3;
   // e_i x r_j = (0, -R(i2, j), R(i1, j)) in the cyclic order of i; its products with r_j1, r_j2 are entries of R.
-  const double length2 = pair.R(i1, j) * pair.R(i1, j) + pair.R(i2, j) * pair.R(i2, j);
   const double centre = pair.t[i2] * pair.R(i1, j) - pair.t[i1] * pair.R(i2, j);
   const double extents = pair.a[i1] * pair.R_abs(i2, j) + pair.a[i2] * pair.R_abs(i1, j) +
                          pair.b[j1] * pair.R_abs(i, j2) + pair.b[j2] * pair.R_abs(i, j1);
+  const double scaled = std::abs(centre) - extents, floor = std::max(best.separation, at_least);
+  // The cross product is no longer than 1: divided by that, an overlap only grows.
+  if (scaled < 0.0 && scaled < floor) return;
+  const double length2 = pair.R(i1, j) * pair.R(i1, j) + pair.R(i2, j) * pair.R(i2, j);
   const bool honest = length2 < kNearlyParallel;
-  if (!honest && !may_exceed(std::abs(centre) - extents, length2, std::max(best.separation, at_least)))
-    return;
+  if (!honest && !may_exceed(scaled, length2, floor)) return;
   if (length2 < kParallel) return;
-  const BoxAxis axis = evaluate_edge_axis(pair, i, j, std::sqrt(length2), honest);
+  const BoxAxis axis = evaluate_edge_axis<i, j>(pair, std::sqrt(length2), honest);
   if (axis.separation > best.separation) best = axis;
 }
 

@@ -24,6 +24,8 @@ constexpr double kAtRest = 1e-13, kAtRestWithFriction = 1e-10;
 /// More contacts than this at once are left to the interior point method.
 constexpr std::size_t kDense = 64;
 constexpr int kFrictionSweeps = 100;
+/// Of single contacts, hardest first, at the bound of the passes. Points of one box need some dozens.
+constexpr int kMostStops = 1000;
 
 Vec3 contact_velocity(const ContactProblem& problem, const PointContact& c) {
   const Vec3 u = relative_velocity(problem.bodies[c.a], problem.bodies[c.b], c.rA, c.rB);
@@ -53,12 +55,15 @@ class Pass {
   /// Returns whether energy had to be clamped.
   bool reflect() {
     if (violated_.size() == 1) {
-      take(0, point_impact(contact(0), u_before_[0]));
+      take(0, point_impact(contact(0).restitution));
       return false;
     }
     compress();
     return expand();
   }
+
+  /// Of a single contact, without restitution.
+  void stop() { take(0, point_impact(0.0)); }
 
   void compress() {
     if (frictionless_ && violated_.size() <= kDense) {
@@ -69,12 +74,14 @@ class Pass {
   }
 
  private:
-  Vec3 point_impact(const PointContact& c, const Vec3& u) const {
-    const double factor = -(1.0 + c.restitution) * u.x();
+  Vec3 point_impact(double restitution) const {
+    const PointContact& c = contact(0);
+    const Vec3& u = u_before_[0];
+    const double factor = -(1.0 + restitution) * u.x();
     if (frictionless_ && linkage_.empty()) return {factor * c.mass_n, 0.0, 0.0};
     const Mat3 K = inverse_mass_of(c);
     if (frictionless_) return {factor / K(0, 0), 0.0, 0.0};
-    return solve_point_impact(K, u, c.friction, c.restitution);
+    return solve_point_impact(K, u, c.friction, restitution);
   }
 
   Mat3 inverse_mass_of(const PointContact& c) const {
@@ -365,11 +372,7 @@ class Blow {
     while (find_violated()) {
       if (report.passes == settings.max_passes) {
         report.capped = true;
-        violated_.clear();
-        for (std::uint32_t i = 0; i < problem_.contacts.size(); ++i) {
-          if (problem_.contacts[i].mass_n > 0.0) violated_.push_back(i);
-        }
-        Pass(problem_, linkage_, first_rope_, violated_).compress();
+        end_inelastically();
         break;
       }
       ++report.passes;
@@ -379,6 +382,24 @@ class Blow {
   }
 
  private:
+  /// All at once, and what that leaves, where friction has no common solution, one by one: each takes energy away.
+  void end_inelastically() {
+    violated_.clear();
+    for (std::uint32_t i = 0; i < problem_.contacts.size(); ++i) {
+      if (problem_.contacts[i].mass_n > 0.0) violated_.push_back(i);
+    }
+    Pass(problem_, linkage_, first_rope_, violated_).compress();
+    for (int i = 0; i < kMostStops && find_violated(); ++i) {
+      const auto approach = [this](std::uint32_t k) {
+        return contact_velocity(problem_, problem_.contacts[k]).x();
+      };
+      const std::vector<std::uint32_t> hardest = {
+          *std::min_element(violated_.begin(), violated_.end(),
+                            [&](std::uint32_t k, std::uint32_t l) { return approach(k) < approach(l); })};
+      Pass(problem_, linkage_, first_rope_, hardest).stop();
+    }
+  }
+
   /// Contacts that approach, and with them the ropes that hold against them in the same instant.
   bool find_violated() {
     violated_.clear();

@@ -11,7 +11,7 @@
 namespace tumble {
 
 struct ReflectionSettings {
-  int max_passes = 32;  ///< Then one inelastic solve of all contacts ends it.
+  int max_passes = 32;  ///< Then the contacts end it without restitution.
 };
 
 struct ReflectionReport {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -135,6 +136,46 @@ TEST(Impact, ALossyCradleHandsOnWhatOneImpactAfterTheOtherWould) {
       EXPECT_NEAR(world.motion(4).v.x(), std::pow(0.95, 4), 1e-13);
       EXPECT_NEAR(world.compute_conserved().momentum.x(), 1.0, 1e-14);
       EXPECT_LE(world.compute_conserved().kinetic_energy, 0.5);
+    }
+  }
+}
+
+/// Velocities of five equal balls on a line after all their impacts, pair by pair in order of time.
+std::array<double, 5> lossy_cradle(int arriving, double gap, double restitution) {
+  std::array<double, 5> v{};
+  std::array<double, 4> gaps;
+  gaps.fill(gap);
+  gaps[static_cast<std::size_t>(arriving) - 1] += 0.5;
+  std::fill_n(v.begin(), arriving, 1.0);
+  while (true) {
+    std::size_t pair = 4;
+    double time = kInfinity;
+    for (std::size_t i = 0; i < 4; ++i) {
+      if (v[i] - v[i + 1] <= 1e-14 || gaps[i] / (v[i] - v[i + 1]) >= time) continue;
+      pair = i;
+      time = gaps[i] / (v[i] - v[i + 1]);
+    }
+    if (pair == 4) return v;
+    for (std::size_t i = 0; i < 4; ++i) gaps[i] -= time * (v[i] - v[i + 1]);
+    gaps[pair] = 0.0;
+    const double mean = 0.5 * (v[pair] + v[pair + 1]), apart = 0.5 * restitution * (v[pair] - v[pair + 1]);
+    v[pair] = mean - apart;
+    v[pair + 1] = mean + apart;
+  }
+}
+
+TEST(Impact, ALossyCradleOfSeveralHandsOnWhatPairAfterPairWould) {
+  for (const double h : kImpactSteps) {
+    for (const double gap : {0.0, 1e-9}) {
+      for (int arriving = 1; arriving <= 4; ++arriving) {
+        World world = cradle(arriving, gap, 0.9, h);
+        run(world, static_cast<int>(std::lround(1.0 / h)));
+        const std::array<double, 5> expected = lossy_cradle(arriving, 1e-9, 0.9);
+        for (std::uint32_t i = 0; i < 5; ++i) {
+          EXPECT_NEAR(world.motion(i).v.x(), expected[i], 1e-13) << h << " " << gap << " " << arriving;
+        }
+        EXPECT_NEAR(world.compute_conserved().momentum.x(), arriving, 1e-14);
+      }
     }
   }
 }

@@ -17,7 +17,7 @@ struct BlowTally {
   int capped = 0, clamped = 0, slid = 0;
 };
 
-inline BlowTally strike_random_boxes(int points, int count) {
+inline BlowTally strike_random_boxes(int points, int count, const ReflectionSettings& settings = {}) {
   BlowTally tally;
   std::uint64_t state = 12345 + static_cast<std::uint64_t>(points);
   const auto random = [&state] {
@@ -56,7 +56,7 @@ inline BlowTally strike_random_boxes(int points, int count) {
     }
     const double before = kinetic_energy(problem);
     const Vec3 v_before = box.v;
-    const ReflectionReport report = reflect(problem);
+    const ReflectionReport report = reflect(problem, settings);
     tally.capped += report.capped;
     tally.clamped += report.clamped;
     tally.gain = std::max(tally.gain, kinetic_energy(problem) / before - 1.0);

@@ -23,6 +23,18 @@ TEST(Reflection,
   }
 }
 
+TEST(Reflection, BlowsThatEndAtTheBoundOfPassesAreSafeToo) {
+  // 31 of 100 000 blows in three points need more than 32 passes. With a bound of one, one in ten ends there.
+  for (const int points : {3, 4}) {
+    const BlowTally tally = strike_random_boxes(points, 1500, {.max_passes = 1});
+    EXPECT_GE(tally.capped, 100) << points;
+    EXPECT_LE(tally.gain, 1e-13) << points;
+    EXPECT_LE(tally.beyond_cone, 1e-13) << points;
+    EXPECT_LE(tally.approach, 1e-8) << points;
+    EXPECT_LE(tally.momentum, 1e-13) << points;
+  }
+}
+
 TEST(Reflection, DifferentRestitutionsAreClampedWhereTheyWouldGain) {
   // Two contacts on a bar that resist each other: alone, the livelier would give back more than came in.
   ContactProblem problem;

@@ -14,7 +14,7 @@ constexpr double kMostSubSteps = 32.0;
 constexpr int kMostRounds = 40;
 constexpr double kCollocated = 1e-15, kGoodEnough = 1e-12;  // relative change of the stages in a round
 
-constexpr std::size_t kStages = 3;
+constexpr std::size_t kStages = SmoothSystem::kStages;
 constexpr double kRoot = 3.87298334620741688518;  // sqrt(15)
 constexpr std::array<double, kStages> kTime = {0.5 - kRoot / 10.0, 0.5, 0.5 + kRoot / 10.0};
 constexpr std::array<double, kStages> kWeight = {5.0 / 18.0, 4.0 / 9.0, 5.0 / 18.0};
@@ -23,16 +23,8 @@ constexpr std::array<std::array<double, kStages>, kStages> kStage = {
      {5.0 / 36.0 + kRoot / 24.0, 2.0 / 9.0, 5.0 / 36.0 - kRoot / 24.0},
      {5.0 / 36.0 + kRoot / 30.0, 2.0 / 9.0 + kRoot / 15.0, 5.0 / 36.0}}};
 
-/// Rates of change of a body's state; w and the matrix are what the springs need of it.
-struct Slope {
-  Vec3 x = Vec3::Zero(), v = Vec3::Zero(), L = Vec3::Zero();
-  Eigen::Vector4d q = Eigen::Vector4d::Zero();
-};
-struct Place {
-  Vec3 x, v, w, L;
-  Eigen::Vector4d q;
-  Mat3 R_WB;
-};
+using Slope = SmoothSystem::Slope;
+using Place = SmoothSystem::Place;
 using Slopes = std::vector<Slope>;
 
 /// A dynamic body at y0 + h sum a_j k_j, or one with given velocities after `time`.
@@ -80,10 +72,14 @@ class Stepper {
  public:
   explicit Stepper(SmoothSystem& system)
       : system_(system),
-        places_(system.bodies.size()),
-        forces_(system.bodies.size()),
-        torques_(system.bodies.size()) {
+        slopes_(system.scratch.slopes),
+        places_(system.scratch.places),
+        forces_(system.scratch.forces),
+        torques_(system.scratch.torques) {
     for (Slopes& slopes : slopes_) slopes.resize(system.bodies.size());
+    places_.resize(system.bodies.size());
+    forces_.resize(system.bodies.size());
+    torques_.resize(system.bodies.size());
   }
 
   bool step(double h) {
@@ -149,9 +145,9 @@ class Stepper {
   }
 
   SmoothSystem& system_;
-  std::array<Slopes, kStages> slopes_;
-  std::vector<Place> places_;
-  std::vector<Vec3> forces_, torques_;
+  std::array<Slopes, kStages>& slopes_;
+  std::vector<Place>& places_;
+  std::vector<Vec3>&forces_, &torques_;
 };
 
 /// How fast things turn, swing and are damped [rad/s], in units of what a sub-step may hold.
@@ -180,7 +176,8 @@ double sub_steps_per_second(const SmoothSystem& system) {
 bool advance_smoothly(SmoothSystem& system, double h) {
   const double steps = std::max(1.0, std::ceil(h * sub_steps_per_second(system)));
   if (!(steps <= kMostSubSteps)) return false;
-  std::vector<Motion> start;
+  std::vector<Motion>& start = system.scratch.start;
+  start.clear();
   for (const SmoothBody& body : system.bodies) start.push_back(body.motion);
   Stepper stepper(system);
   for (double i = 0.0; i < steps; i += 1.0) {

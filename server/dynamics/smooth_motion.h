@@ -3,6 +3,7 @@
 // phase error falls with the sixth power of the step. World frame; the momentum is the state of rotation.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -31,6 +32,26 @@ struct SmoothSpring {
 struct SmoothSystem {
   std::vector<SmoothBody> bodies;
   std::vector<SmoothSpring> springs;
+
+  /// Rates of change of a body's state.
+  struct Slope {
+    Vec3 x = Vec3::Zero(), v = Vec3::Zero(), L = Vec3::Zero();
+    Eigen::Vector4d q = Eigen::Vector4d::Zero();
+  };
+  /// Where a body is at a stage; w and the matrix are what the springs need of it.
+  struct Place {
+    Vec3 x, v, w, L;
+    Eigen::Vector4d q;
+    Mat3 R_WB;
+  };
+  static constexpr std::size_t kStages = 3;
+  /// What advance_smoothly writes on; kept, so that it allocates nothing but for a larger system.
+  struct Scratch {
+    std::array<std::vector<Slope>, kStages> slopes;
+    std::vector<Place> places;
+    std::vector<Vec3> forces, torques;
+    std::vector<Motion> start;
+  } scratch;
 };
 
 /// Moves the dynamic bodies through h [s], in sub-steps of 0.05 rad of the fastest turn and 0.1 rad of the stiffest

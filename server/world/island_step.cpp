@@ -70,7 +70,6 @@ void World::solve_problem(const StepContext& step) {
   ++(solved.accepted ? counters_.islands_accepted : counters_.islands_solved);
   step_residual_ = std::max(step_residual_, solved.residual);
   scratch_.residual = solved.residual;
-  for (const PointContact& c : problem.contacts) step_push_work_ += c.lambda.x() * std::max(0.0, c.bound);
   store_impulses();
 }
 
@@ -246,6 +245,8 @@ bool World::try_rest(double residual) {
 void World::move_bodies(const StepContext& step) {
   const bool mean = scratch_.problem.drift == ContactProblem::Drift::average;
   const double share = mean ? gainless_share(step) : 0.0;
+  for (const PointContact& c : scratch_.problem.contacts)
+    step_push_work_ += c.lambda.x() * std::max(0.0, c.bound);
   for (std::uint32_t i = 0; i < scratch_.problem_movable; ++i) {
     const SolverBody& solved = scratch_.problem.bodies[i];
     move_body(scratch_.problem_slot[i], velocity_path(i, share), solved.shift, solved.turn, step);

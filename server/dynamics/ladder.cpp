@@ -10,7 +10,7 @@
 namespace tumble {
 namespace {
 
-/// Solutions are sought a tenth below the tolerance, so that they are accepted as warm starts of the steps that follow.
+/// Solutions are sought a tenth below the tolerance or rounding, so that they are accepted as warm starts of the steps that follow.
 constexpr double kMargin = 0.1;
 constexpr std::size_t kFewContacts = 8;
 
@@ -26,7 +26,7 @@ double largest_impulse(const ContactProblem& problem) {
 }  // namespace
 
 Ladder::Ladder(ContactProblem& problem, const SolverSettings& settings)
-    : problem_(problem), settings_(settings), wanted_(kMargin * settings.tolerance), best_(problem) {
+    : problem_(problem), settings_(settings), best_(problem) {
   report_.accepted = best_.residual() < settings.tolerance;
   best_.restore_start();
   for (const SolverBody& body : problem.bodies) {
@@ -39,6 +39,7 @@ Ladder::Ladder(ContactProblem& problem, const SolverSettings& settings)
     const Vec3 u = relative_velocity(problem.bodies[c.a], problem.bodies[c.b], c.rA, c.rB);
     speed_ = std::max(speed_, std::sqrt(u.squaredNorm()));
   }
+  wanted_ = std::max(kMargin * settings.tolerance, kMargin * kRounding * (1.0 + speed_));
 }
 
 bool Ladder::is_small() const {

@@ -3,6 +3,7 @@
 // walls that overlap it) is recognised by its residual or its impulses and left to soft_step, whose push is bounded.
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 
@@ -18,7 +19,10 @@ class Ladder {
 
   /// The warm start is a solution.
   bool accepted() const { return report_.accepted; }
-  bool solved() const { return accepted() || best_.residual() < wanted_; }
+  /// To what was asked for, or to rounding, below which no rung gets reliably.
+  bool solved() const {
+    return accepted() || best_.residual() < std::max(wanted_, kRounding * (1.0 + speed_));
+  }
   /// A single body with up to two faces' contacts: sweeps cost less than one factorization.
   bool is_small() const;
   /// Fastest velocity of a body at the start of the step [m/s or rad/s].
@@ -39,12 +43,14 @@ class Ladder {
   double wanted() const { return wanted_; }
 
  private:
+  static constexpr double kRounding = 1e-11;  // of the speeds, and of 1 m/s
+
   bool is_plausible() const;
   VelocitySystem& system();
 
   ContactProblem& problem_;
   const SolverSettings& settings_;
-  const double wanted_;  // [m/s]
+  double wanted_ = 0.0;  // [m/s]
   double mass_ = 0.0;    // [kg] of the movable bodies
   double speed_ = 0.0;   // [m/s] fastest approach at a contact, or body
   int movable_ = 0;

@@ -3,7 +3,7 @@
 //   open  (y_n <= 0):       l = 0
 //   stick (L <= mu y_n):    l = l_old - R m (u + du - b)          R large: the multipliers' step to u = b
 //   slip:  l_n as in stick; l_t = mu l_n e - c/(1 - c) P (l_old + m_t du),   P = 1 - e e^T
-// all of the form p0 - G du. The changes of v and l found together are scaled back until the law is met better.
+// all of the form p0 - G du. A turning is taken likewise, within what the normal impulse of its contact allows now. The changes of v and l found together are scaled back until the law is met better.
 #include "dynamics/alm_newton.h"
 
 #include <algorithm>
@@ -22,11 +22,13 @@ constexpr double kFrictionless = 1e-6;
 
 struct Law {
   Coupling joins;
-  enum class Kind { contact, half_line, line, spring } kind;
+  enum class Kind { contact, half_line, line, spring, turning } kind;
   double bound, friction, mass_n, mass_t;
   double softness;          // spring
   Vec3* contact = nullptr;  // where the impulse goes: one of the two
   double* row = nullptr;
+  Turning* turning = nullptr;
+  std::size_t presses = 0;    // turning: the law of its contact
   Vec3 l, u, answer, dl, du;  // impulse, velocity; p0; changes of a step
   Mat3 G;
 };
@@ -38,10 +40,13 @@ class AlmNewton {
 
  private:
   void add_rows(ContactProblem& problem);
+  void add_turnings(ContactProblem& problem);
   void load();
   void linearize(Law& law) const;
   void linearize_contact(Law& law) const;
+  void linearize_turning(Law& law) const;
   static double defect(const Law& law, double step);
+  double turning_defect(const Law& law, double step) const;
   double defect(double step) const;
   bool find_changes();
   double choose_step() const;
@@ -57,7 +62,7 @@ class AlmNewton {
 
 AlmNewton::AlmNewton(ContactProblem& problem, VelocitySystem& system, double tolerance, BestImpulses& best)
     : system_(system), tolerance_(tolerance), best_(best) {
-  laws_.reserve(problem.contacts.size() + problem.rows.size());
+  laws_.reserve(problem.contacts.size() + problem.rows.size() + problem.turnings.size());
   for (PointContact& c : problem.contacts) {
     if (c.mass_n == 0.0) continue;
     Law& law = laws_.emplace_back();
@@ -70,6 +75,24 @@ AlmNewton::AlmNewton(ContactProblem& problem, VelocitySystem& system, double tol
     law.contact = &c.lambda;
   }
   add_rows(problem);
+  add_turnings(problem);
+}
+
+void AlmNewton::add_turnings(ContactProblem& problem) {
+  for (Turning& turning : problem.turnings) {
+    if (problem.contacts[turning.contact].mass_n == 0.0) continue;
+    const auto presses = std::find_if(laws_.begin(), laws_.end(), [&](const Law& law) {
+      return law.contact == &problem.contacts[turning.contact].lambda;
+    });
+    const auto index = static_cast<std::size_t>(presses - laws_.begin());
+    Law& law = laws_.emplace_back();
+    law.presses = index;
+    law.joins = system_.make_coupling(turning);
+    law.kind = Law::Kind::turning;
+    law.mass_n = turning.mass_n;
+    law.mass_t = turning.mass_t;
+    law.turning = &turning;
+  }
 }
 
 void AlmNewton::add_rows(ContactProblem& problem) {
@@ -92,7 +115,7 @@ void AlmNewton::add_rows(ContactProblem& problem) {
 void AlmNewton::load() {
   system_.load_velocities(v_);
   for (Law& law : laws_) {
-    law.l = law.contact ? *law.contact : Vec3(*law.row, 0.0, 0.0);
+    law.l = law.contact ? *law.contact : law.turning ? law.turning->lambda : Vec3(*law.row, 0.0, 0.0);
     law.u = system_.velocity(law.joins, v_) + law.joins.offset;
   }
 }
@@ -123,6 +146,33 @@ void AlmNewton::linearize_contact(Law& law) const {
   law.answer.z() = law.friction * law.answer.x() * e2 - across * e1;
 }
 
+void AlmNewton::linearize_turning(Law& law) const {
+  law.G.setZero();
+  const Law& contact = laws_[law.presses];
+  const double l_n = contact.l.x() - contact.mass_n * (contact.u.x() - contact.bound);
+  const Vec3 mass(law.mass_n, law.mass_t, law.mass_t), y = law.l - mass.cwiseProduct(law.u);
+  law.answer = nearest_moment(*law.turning, y, l_n);
+  if (law.answer.x() == y.x()) {  // it sticks
+    law.G(0, 0) = rigidity_ * law.mass_n;
+    law.answer.x() = law.l.x() - law.G(0, 0) * law.u.x();
+  }
+  const double length = std::sqrt(y.y() * y.y() + y.z() * y.z());
+  const double radius = law.turning->rolling * std::max(0.0, l_n);
+  const double share = length <= radius ? rigidity_ : std::min(rigidity_, radius / (length - radius));
+  if (length <= radius) {
+    law.G(1, 1) = law.G(2, 2) = share * law.mass_t;
+    law.answer.tail<2>() = law.l.tail<2>() - share * law.mass_t * law.u.tail<2>();
+    return;
+  }
+  const double e1 = y.y() / length, e2 = y.z() / length, turn = share * law.mass_t;
+  law.G(1, 1) = turn * e2 * e2;
+  law.G(2, 2) = turn * e1 * e1;
+  law.G(1, 2) = law.G(2, 1) = -turn * e1 * e2;
+  const double across = share * (e1 * law.l.z() - e2 * law.l.y());
+  law.answer.y() = radius * e1 + across * e2;
+  law.answer.z() = radius * e2 - across * e1;
+}
+
 void AlmNewton::linearize(Law& law) const {
   law.G.setZero();
   law.answer.setZero();
@@ -143,7 +193,7 @@ bool AlmNewton::find_changes() {
   system_.set_mass();
   dv_.assign(v_.size(), Vec6::Zero());
   for (Law& law : laws_) {
-    linearize(law);
+    law.kind == Law::Kind::turning ? linearize_turning(law) : linearize(law);
     system_.add_stiffness(law.joins, law.G);
     system_.add_impulse(law.joins, law.answer - law.l, dv_);
   }
@@ -178,9 +228,18 @@ double AlmNewton::defect(const Law& law, double step) {
   return m * r_n * r_n + (d1 * d1 + d2 * d2) / law.mass_t;
 }
 
+double AlmNewton::turning_defect(const Law& law, double step) const {
+  const Law& contact = laws_[law.presses];
+  const Vec3 mass(law.mass_n, law.mass_t, law.mass_t), l = law.l + step * law.dl, u = law.u + step * law.du;
+  const Vec3 change =
+      nearest_moment(*law.turning, l - mass.cwiseProduct(u), contact.l.x() + step * contact.dl.x()) - l;
+  return change.cwiseProduct(change).cwiseQuotient(mass).sum();
+}
+
 double AlmNewton::defect(double step) const {
   double sum = 0.0;
-  for (const Law& law : laws_) sum += defect(law, step);
+  for (const Law& law : laws_)
+    sum += law.kind == Law::Kind::turning ? turning_defect(law, step) : defect(law, step);
   return sum;
 }
 
@@ -207,7 +266,9 @@ void AlmNewton::store(double step) {
       const double radius = law.friction * l.x(), length = std::sqrt(l.y() * l.y() + l.z() * l.z());
       if (length > radius) l.tail<2>() *= radius / length;
     }
-    if (law.contact) {
+    if (law.turning) {
+      law.turning->lambda = nearest_moment(*law.turning, l, laws_[law.presses].contact->x());
+    } else if (law.contact) {
       *law.contact = l;
     } else {
       *law.row = l.x();

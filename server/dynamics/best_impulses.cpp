@@ -4,7 +4,11 @@
 namespace tumble {
 
 BestImpulses::BestImpulses(ContactProblem& problem)
-    : problem_(problem), contact_(problem.contacts.size()), row_(problem.rows.size()), residual_(kInfinity) {
+    : problem_(problem),
+      contact_(problem.contacts.size()),
+      row_(problem.rows.size()),
+      turning_(problem.turnings.size()),
+      residual_(kInfinity) {
   free_.reserve(2 * problem.bodies.size());
   for (const SolverBody& body : problem.bodies) {
     free_.push_back(body.v);
@@ -38,6 +42,7 @@ void BestImpulses::restore_start() {
 void BestImpulses::drop() {
   for (Vec3& lambda : contact_) lambda.setZero();
   for (double& lambda : row_) lambda = 0.0;
+  for (Vec3& lambda : turning_) lambda.setZero();
   residual_ = kInfinity;
   restore_start();
 }
@@ -45,11 +50,13 @@ void BestImpulses::drop() {
 void BestImpulses::keep() {
   for (std::size_t i = 0; i < contact_.size(); ++i) contact_[i] = problem_.contacts[i].lambda;
   for (std::size_t i = 0; i < row_.size(); ++i) row_[i] = problem_.rows[i].lambda;
+  for (std::size_t i = 0; i < turning_.size(); ++i) turning_[i] = problem_.turnings[i].lambda;
 }
 
 void BestImpulses::set_impulses() {
   for (std::size_t i = 0; i < contact_.size(); ++i) problem_.contacts[i].lambda = contact_[i];
   for (std::size_t i = 0; i < row_.size(); ++i) problem_.rows[i].lambda = row_[i];
+  for (std::size_t i = 0; i < turning_.size(); ++i) problem_.turnings[i].lambda = turning_[i];
 }
 
 void BestImpulses::set_free_velocities() {

@@ -34,6 +34,7 @@ class BestImpulses {
   std::vector<Vec3> free_;  // v*, w* of every body
   std::vector<Vec3> contact_;
   std::vector<double> row_;
+  std::vector<Vec3> turning_;
   double residual_;
 };
 

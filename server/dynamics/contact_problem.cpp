@@ -48,6 +48,28 @@ double contact_residual(const ContactProblem& problem, const PointContact& c) {
   return std::max(r_n, r_t) + 0.0 * (u.sum() + c.lambda.sum() + r_n + r_t);
 }
 
+void update_masses(const ContactProblem& problem, Turning& turning) {
+  const PointContact& c = problem.contacts[turning.contact];
+  const Mat3 K = problem.bodies[c.a].inv_I_W + problem.bodies[c.b].inv_I_W;
+  const double k_nn = c.n.dot(K * c.n), k11 = c.t1.dot(K * c.t1), k22 = c.t2.dot(K * c.t2);
+  const double k12 = c.t1.dot(K * c.t2), half = 0.5 * (k11 - k22);
+  const double largest = 0.5 * (k11 + k22) + std::sqrt(half * half + k12 * k12);
+  turning.mass_n = k_nn > 0.0 ? 1.0 / k_nn : 0.0;
+  turning.mass_t = largest > 0.0 ? 1.0 / largest : 0.0;
+}
+
+double turning_residual(const ContactProblem& problem, const Turning& turning) {
+  if (turning.mass_n == 0.0) return 0.0;
+  const PointContact& c = problem.contacts[turning.contact];
+  const Vec3 w = problem.bodies[c.b].w - problem.bodies[c.a].w;
+  const Vec3 mass(turning.mass_n, turning.mass_t, turning.mass_t);
+  const Vec3 wanted = turning.lambda - mass.cwiseProduct(Vec3(w.dot(c.n), w.dot(c.t1), w.dot(c.t2)));
+  const Vec3 change = nearest_moment(turning, wanted, c.lambda.x()) - turning.lambda;
+  const double r_t = std::sqrt(change.y() * change.y() + change.z() * change.z()) / turning.mass_t;
+  const double r_n = std::abs(change.x()) / turning.mass_n;
+  return std::max(r_n, r_t) + 0.0 * (r_n + r_t);
+}
+
 double row_residual(const ContactProblem& problem, const ScalarRow& row) {
   if (row.mass == 0.0) return 0.0;
   const double u = row.n.dot(relative_velocity(problem.bodies[row.a], problem.bodies[row.b], row.rA, row.rB));
@@ -67,6 +89,13 @@ void set_tangents(PointContact& contact) {
   contact.t1 = std::abs(n.x()) > kLarge ? Vec3(n.y(), -n.x(), 0.0) : Vec3(0.0, n.z(), -n.y());
   contact.t1 /= std::sqrt(contact.t1.squaredNorm());
   contact.t2 = n.cross(contact.t1);
+}
+
+Vec3 nearest_moment(const Turning& turning, const Vec3& moment, double l_n) {
+  const double most_n = turning.torsional * std::max(0.0, l_n), most_t = turning.rolling * std::max(0.0, l_n);
+  const double length = std::sqrt(moment.y() * moment.y() + moment.z() * moment.z());
+  const double share = length > most_t ? most_t / length : 1.0;
+  return {std::clamp(moment.x(), -most_n, most_n), share * moment.y(), share * moment.z()};
 }
 
 Mat3 inverse_mass(const SolverBody& A, const SolverBody& B, const PointContact& c) {
@@ -93,6 +122,7 @@ void prepare(ContactProblem& problem, const BoundSettings& settings) {
     c.un0 = c.n.dot(relative_start_velocity(problem.bodies[c.a], problem.bodies[c.b], c.rA, c.rB));
     c.bound = bound_of(c.separation, problem.h, settings);
   }
+  for (Turning& turning : problem.turnings) update_masses(problem, turning);
   for (ScalarRow& row : problem.rows) {
     const double k = inverse_mass_along(problem.bodies[row.a], row.rA, row.n, row.n) +
                      inverse_mass_along(problem.bodies[row.b], row.rB, row.n, row.n);
@@ -107,6 +137,18 @@ void apply_impulse(SolverBody& A, SolverBody& B, const Vec3& rA, const Vec3& rB,
   B.w += B.inv_I_W * rB.cross(impulse);
 }
 
+void apply_moment(SolverBody& A, SolverBody& B, const Vec3& moment) {
+  A.w -= A.inv_I_W * moment;
+  B.w += B.inv_I_W * moment;
+}
+
+void apply_stored_moments(ContactProblem& problem) {
+  for (const Turning& turning : problem.turnings) {
+    const PointContact& c = problem.contacts[turning.contact];
+    apply_moment(problem.bodies[c.a], problem.bodies[c.b], in_world(c, turning.lambda));
+  }
+}
+
 void apply_stored_impulses(ContactProblem& problem) {
   for (const ScalarRow& row : problem.rows) {
     apply_impulse(problem.bodies[row.a], problem.bodies[row.b], row.rA, row.rB, row.lambda * row.n);
@@ -114,6 +156,7 @@ void apply_stored_impulses(ContactProblem& problem) {
   for (const PointContact& c : problem.contacts) {
     apply_impulse(problem.bodies[c.a], problem.bodies[c.b], c.rA, c.rB, in_world(c, c.lambda));
   }
+  apply_stored_moments(problem);
 }
 
 double compute_residual(const ContactProblem& problem) {
@@ -125,6 +168,7 @@ double compute_residual(const ContactProblem& problem) {
   };
   for (const ScalarRow& row : problem.rows) take(row_residual(problem, row));
   for (const PointContact& c : problem.contacts) take(contact_residual(problem, c));
+  for (const Turning& turning : problem.turnings) take(turning_residual(problem, turning));
   return largest + poison;
 }
 

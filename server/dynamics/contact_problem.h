@@ -37,6 +37,19 @@ struct PointContact {
   double mass_n = 0.0, mass_t = 0.0;  ///< 1/k_nn and 1/lambda_max(K_tt) [kg]; set by `prepare`.
 };
 
+/// Friction of a contact against turning, of materials that ask for it: moments about its n, t1, t2 that work against the
+/// relative angular velocity w = w_b - w_a like friction against sliding, with + on b and - on a:
+///   |lambda_n| <= torsional l_n,   |lambda_t| <= rolling l_n   (l_n of the contact).
+struct Turning {
+  std::uint32_t contact;              ///< Index into `contacts`.
+  double rolling, torsional;          ///< [m], >= 0.
+  Vec3 lambda = Vec3::Zero();         ///< (n, t1, t2) [N m s]. In: warm start. Out: the solution.
+  double mass_n = 0.0, mass_t = 0.0;  ///< 1/k_nn and 1/lambda_max(K_tt) [kg m^2]; set by `prepare`.
+};
+
+/// The moment nearest to `moment` (n, t1, t2) that a normal impulse l_n [N s] lets the contact exert [N m s].
+Vec3 nearest_moment(const Turning& turning, const Vec3& moment, double l_n);
+
 /// One direction: u = n . (velocity of b's anchor - a's anchor). Made by make_spring_row, make_rope_row, make_joint_row.
 ///   soft:  lambda = -softness (u + bias), unbounded (springs);   rigid (softness = inf): u >= bound, lambda >= 0 (rope:
 ///   n from a to b reversed, so that lambda >= 0 pulls the bodies together), or with lower = -inf u = bound (joint).
@@ -71,6 +84,7 @@ struct ContactProblem {
   std::vector<SolverBody> bodies;
   std::vector<PointContact> contacts;
   std::vector<ScalarRow> rows;
+  std::vector<Turning> turnings;     ///< Of some of the contacts, in their order.
   Drift drift = Drift::end;          ///< Out.
   PatternStore* patterns = nullptr;  ///< Where patterns of factorization are kept; null: they are made anew.
 
@@ -78,6 +92,7 @@ struct ContactProblem {
     bodies.clear();
     contacts.clear();
     rows.clear();
+    turnings.clear();
   }
 };
 
@@ -107,12 +122,17 @@ void prepare(ContactProblem& problem, const BoundSettings& settings);
 /// `impulse` [N s] on B at rB, its opposite on A at rA.
 void apply_impulse(SolverBody& A, SolverBody& B, const Vec3& rA, const Vec3& rB, const Vec3& impulse);
 
-/// v, w += M^-1 J^T lambda of every contact and row.
+/// The same of a moment [N m s] on B, its opposite on A.
+void apply_moment(SolverBody& A, SolverBody& B, const Vec3& moment);
+
+/// w += M^-1 J^T lambda of every turning.
+void apply_stored_moments(ContactProblem& problem);
+/// v, w += M^-1 J^T lambda of every contact, row and turning.
 void apply_stored_impulses(ContactProblem& problem);
 
 /// Largest violation of the conditions at the current (v, lambda) [m/s], the natural map of the Coulomb problem:
 ///   r_n = |max(0, l_n - m_n (u_n - b)) - l_n| / m_n,   r_t = |P_disc(l_t - m_t u_t) - l_t| / m_t.
-/// Rigid row: the same with its lower limit; soft row: |l + s (u + bias)| / (m + s), the velocity change by which the
+/// Turning: as friction, in rad/s. Rigid row: the same with its lower limit; soft row: |l + s (u + bias)| / (m + s), the velocity change by which the
 /// row would correct itself. NaN if anything is not finite.
 double compute_residual(const ContactProblem& problem);
 

@@ -269,6 +269,7 @@ int InteriorPoint::solve() {
 InteriorPointReport run_interior_point(ContactProblem& problem, VelocitySystem& system, double tolerance,
                                        BestImpulses& best) {
   best.restore_start();
+  apply_stored_moments(problem);  // of turnings, which stay as they are here: Newton's method moves them
   return {.iterations = InteriorPoint(problem, system, tolerance, best).solve()};
 }
 

@@ -83,6 +83,7 @@ class SoftStep {
   std::vector<Displacement> displaced_;
   std::vector<ContactPath> contacts_;
   std::vector<RowPath> rows_;
+  std::vector<Vec3> moments_;     // of the turnings, sums over the sub-steps
   std::vector<SweptBody> start_;  // of the sub-step
 };
 
@@ -99,7 +100,8 @@ SoftStep::SoftStep(ContactProblem& problem, int sub_steps)
       drift_(only_springs(problem) ? ContactProblem::Drift::average : ContactProblem::Drift::end),
       sweep_(make_sweep(problem)),
       displaced_(problem.bodies.size()),
-      rows_(sweep_.rows.size()) {
+      rows_(sweep_.rows.size()),
+      moments_(sweep_.turnings.size(), Vec3::Zero()) {
   const double share = 1.0 / sub_steps;
   for (std::size_t i = 0; i < problem.bodies.size(); ++i) {
     const SolverBody& body = problem.bodies[i];
@@ -115,6 +117,7 @@ SoftStep::SoftStep(ContactProblem& problem, int sub_steps)
     c.l_2 *= share;
   }
   for (SweptRow& row : sweep_.rows) row.l *= share;
+  for (SweptTurning& turning : sweep_.turnings) turning.law.lambda *= share;
 }
 
 void SoftStep::kick_and_warm_start() {
@@ -129,6 +132,13 @@ void SoftStep::kick_and_warm_start() {
   for (const SweptContact& c : sweep_.contacts) {
     SweptBody &A = sweep_.bodies[c.a], &B = sweep_.bodies[c.b];
     apply(c, c.l_n, c.l_1, c.l_2, A, B);
+  }
+  for (const SweptTurning& turning : sweep_.turnings) {
+    const SweptContact& c = sweep_.contacts[turning.contact];
+    const Vec3& l = turning.law.lambda;
+    turning.n.apply(l.x(), 0.0, 0.0, sweep_.bodies[c.a], sweep_.bodies[c.b]);
+    turning.t1.apply(l.y(), 0.0, 0.0, sweep_.bodies[c.a], sweep_.bodies[c.b]);
+    turning.t2.apply(l.z(), 0.0, 0.0, sweep_.bodies[c.a], sweep_.bodies[c.b]);
   }
 }
 
@@ -179,6 +189,7 @@ void SoftStep::sweep(bool push) {
     SweptBody &A = sweep_.bodies[c.a], &B = sweep_.bodies[c.b];
     visit_contact(c, rule, A, B);
   }
+  visit_turnings(sweep_);
 }
 
 void SoftStep::move() {
@@ -211,18 +222,21 @@ void SoftStep::add_impulses() {
     contacts_[i].l_2 += sweep_.contacts[i].l_2;
   }
   for (std::size_t i = 0; i < rows_.size(); ++i) rows_[i].l += sweep_.rows[i].l;
+  for (std::size_t i = 0; i < moments_.size(); ++i) moments_[i] += sweep_.turnings[i].law.lambda;
 }
 
 /// The problem's velocities are still v* with nothing applied; so are its impulses made here.
 void SoftStep::store() {
   for (ScalarRow& row : problem_.rows) row.lambda = 0.0;
   for (PointContact& c : problem_.contacts) c.lambda.setZero();
+  for (Turning& turning : problem_.turnings) turning.lambda.setZero();
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
     sweep_.contacts[i].l_n = contacts_[i].l_n;
     sweep_.contacts[i].l_1 = contacts_[i].l_1;
     sweep_.contacts[i].l_2 = contacts_[i].l_2;
   }
   for (std::size_t i = 0; i < rows_.size(); ++i) sweep_.rows[i].l = rows_[i].l;
+  for (std::size_t i = 0; i < moments_.size(); ++i) sweep_.turnings[i].law.lambda = moments_[i];
   update_impulses(sweep_, problem_);
   const double before = drift_ == ContactProblem::Drift::average ? 0.5 : 0.0, after = 1.0 - before;
   for (std::size_t i = 0; i < bodies_.size(); ++i) {

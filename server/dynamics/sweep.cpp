@@ -46,6 +46,17 @@ SweptContact make_contact(const ContactProblem& problem, const PointContact& c) 
   return s;
 }
 
+/// d = 0: velocity() is d . (w_b - w_a), apply() turns.
+SweptDirection make_turn(const SolverBody& A, const SolverBody& B, const Vec3& d) {
+  return {Lanes(), Lanes(d), Lanes(d), Lanes(A.inv_I_W * d), Lanes(B.inv_I_W * d)};
+}
+
+SweptTurning make_turning(const ContactProblem& problem, const Turning& turning, std::uint32_t swept) {
+  const PointContact& c = problem.contacts[turning.contact];
+  const SolverBody &A = problem.bodies[c.a], &B = problem.bodies[c.b];
+  return {swept, turning, make_turn(A, B, c.n), make_turn(A, B, c.t1), make_turn(A, B, c.t2)};
+}
+
 }  // namespace
 
 Sweep make_sweep(const ContactProblem& problem) {
@@ -53,9 +64,17 @@ Sweep make_sweep(const ContactProblem& problem) {
   sweep.bodies.reserve(problem.bodies.size());
   for (const SolverBody& body : problem.bodies) sweep.bodies.push_back({Lanes(body.v), Lanes(body.w)});
   sweep.contacts.reserve(problem.contacts.size());
-  for (const PointContact& c : problem.contacts) {
+  auto turning = problem.turnings.begin();
+  for (std::uint32_t i = 0; i < problem.contacts.size(); ++i) {
+    const PointContact& c = problem.contacts[i];
     // A contact between two bodies that cannot be moved has no mass and nothing to solve.
-    if (c.mass_n > 0.0) sweep.contacts.push_back(make_contact(problem, c));
+    if (c.mass_n == 0.0) continue;
+    while (turning != problem.turnings.end() && turning->contact < i) ++turning;
+    if (turning != problem.turnings.end() && turning->contact == i) {
+      const auto swept = static_cast<std::uint32_t>(sweep.contacts.size());
+      sweep.turnings.push_back(make_turning(problem, *turning, swept));
+    }
+    sweep.contacts.push_back(make_contact(problem, c));
   }
   sweep.rows.reserve(problem.rows.size());
   for (const ScalarRow& row : problem.rows) {
@@ -82,6 +101,23 @@ void update_impulses(const Sweep& sweep, ContactProblem& problem) {
     to.lambda = l;
     ++contact;
   }
+  auto turning = sweep.turnings.begin();
+  for (Turning& to : problem.turnings) {
+    const PointContact& c = problem.contacts[to.contact];
+    if (c.mass_n == 0.0) continue;
+    const Vec3& l = (turning++)->law.lambda;
+    apply_moment(problem.bodies[c.a], problem.bodies[c.b], in_world(c, l - to.lambda));
+    to.lambda = l;
+  }
+}
+
+double visit_turnings(Sweep& sweep) {
+  double largest = 0.0;
+  for (SweptTurning& turning : sweep.turnings) {
+    const SweptContact& c = sweep.contacts[turning.contact];
+    largest = std::max(largest, visit_turning(turning, c.l_n, sweep.bodies[c.a], sweep.bodies[c.b]));
+  }
+  return largest;
 }
 
 double sweep_once(Sweep& sweep, SweepOrder order) {
@@ -96,7 +132,9 @@ double sweep_once(Sweep& sweep, SweepOrder order) {
   if (order == SweepOrder::forward) {
     std::for_each(sweep.rows.begin(), sweep.rows.end(), row);
     std::for_each(sweep.contacts.begin(), sweep.contacts.end(), contact);
+    largest = std::max(largest, visit_turnings(sweep));
   } else {
+    largest = std::max(largest, visit_turnings(sweep));
     std::for_each(sweep.contacts.rbegin(), sweep.contacts.rend(), contact);
     std::for_each(sweep.rows.rbegin(), sweep.rows.rend(), row);
   }

@@ -63,10 +63,17 @@ struct SweptRow {
   bool soft;
 };
 
+struct SweptTurning {
+  std::uint32_t contact;     ///< Among the swept ones.
+  Turning law;               ///< With the moment.
+  SweptDirection n, t1, t2;  ///< Without a direction of its own: turns only.
+};
+
 struct Sweep {
   std::vector<SweptBody> bodies;
   std::vector<SweptContact> contacts;
   std::vector<SweptRow> rows;
+  std::vector<SweptTurning> turnings;
 };
 
 /// Copies velocities and impulses in.
@@ -140,5 +147,21 @@ inline double visit_row(SweptRow& row, SweptBody& A, SweptBody& B) {
   const double r = change / row.mass;
   return r * r;
 }
+
+/// After its contact: the moment nearest to what would stop the turning, within what the normal impulse allows. Returns
+/// the square of the correction [rad^2/s^2].
+inline double visit_turning(SweptTurning& turning, double l_n, SweptBody& A, SweptBody& B) {
+  Turning& law = turning.law;
+  const Vec3 w(turning.n.velocity(A, B), turning.t1.velocity(A, B), turning.t2.velocity(A, B));
+  const Vec3 mass(law.mass_n, law.mass_t, law.mass_t);
+  const Vec3 l = nearest_moment(law, law.lambda - mass.cwiseProduct(w), l_n), change = l - law.lambda;
+  law.lambda = l;
+  turning.n.apply(change.x(), 0.0, 0.0, A, B);
+  turning.t1.apply(change.y(), 0.0, 0.0, A, B);
+  turning.t2.apply(change.z(), 0.0, 0.0, A, B);
+  return change.cwiseQuotient(mass).squaredNorm();
+}
+/// Of all of them.
+double visit_turnings(Sweep& sweep);
 
 }  // namespace tumble

@@ -99,6 +99,17 @@ Coupling VelocitySystem::make_coupling(const ScalarRow& row) const {
   return c;
 }
 
+Coupling VelocitySystem::make_coupling(const Turning& turning) const {
+  const PointContact& contact = problem_.contacts[turning.contact];
+  Coupling c = make_coupling(contact);
+  c.turns = true;
+  Vec3 w = Vec3::Zero();
+  if (c.b == Coupling::kImmovable) w += problem_.bodies[contact.b].w;
+  if (c.a == Coupling::kImmovable) w -= problem_.bodies[contact.a].w;
+  c.offset = c.D * w;
+  return c;
+}
+
 void VelocitySystem::load_velocities(std::vector<Vec6>& v) const {
   v.resize(masses_.size());
   for (std::size_t i = 0; i < problem_.bodies.size(); ++i) {
@@ -122,6 +133,11 @@ Vec6 VelocitySystem::momentum(std::size_t position, const Vec6& v) const {
 
 Vec3 VelocitySystem::velocity(const Coupling& c, const std::vector<Vec6>& v) const {
   Vec3 u = Vec3::Zero();
+  if (c.turns) {
+    if (c.b != Coupling::kImmovable) u += v[c.b].tail<3>();
+    if (c.a != Coupling::kImmovable) u -= v[c.a].tail<3>();
+    return c.D * u;
+  }
   if (c.b != Coupling::kImmovable) u += v[c.b].head<3>() + v[c.b].tail<3>().cross(c.rB);
   if (c.a != Coupling::kImmovable) u -= v[c.a].head<3>() + v[c.a].tail<3>().cross(c.rA);
   return c.D * u;
@@ -129,6 +145,11 @@ Vec3 VelocitySystem::velocity(const Coupling& c, const std::vector<Vec6>& v) con
 
 void VelocitySystem::add_impulse(const Coupling& c, const Vec3& p, std::vector<Vec6>& sum) const {
   const Vec3 p_W = c.D.transpose() * p;
+  if (c.turns) {
+    if (c.b != Coupling::kImmovable) sum[c.b].tail<3>() += p_W;
+    if (c.a != Coupling::kImmovable) sum[c.a].tail<3>() -= p_W;
+    return;
+  }
   if (c.b != Coupling::kImmovable) {
     sum[c.b].head<3>() += p_W;
     sum[c.b].tail<3>() += c.rB.cross(p_W);
@@ -151,6 +172,14 @@ void VelocitySystem::set_mass(double scale) {
 void VelocitySystem::add_stiffness(const Coupling& c, const Mat3& G) {
   const Mat3 S = c.D.transpose() * G * c.D;
   const bool moves_a = c.a != Coupling::kImmovable, moves_b = c.b != Coupling::kImmovable;
+  if (c.turns) {
+    if (moves_a) matrix_.diagonal(c.a).bottomRightCorner<3, 3>() += S;
+    if (moves_b) matrix_.diagonal(c.b).bottomRightCorner<3, 3>() += S;
+    if (!moves_a || !moves_b) return;
+    matrix_.lower(c.block).bottomRightCorner<3, 3>() -= S;  // S is symmetric
+    matrix_.upper(c.block).bottomRightCorner<3, 3>() -= S;
+    return;
+  }
   if (moves_a) add_block(S, c.rA, c.rA, matrix_.diagonal(c.a));
   if (moves_b) add_block(S, c.rB, c.rB, matrix_.diagonal(c.b));
   if (!moves_a || !moves_b) return;

@@ -14,7 +14,8 @@
 
 namespace tumble {
 
-/// What a contact or a row joins. u = D (velocity of b's point - of a's) + offset, the offset from immovable bodies.
+/// What a contact, a row or a turning joins. u = D (velocity of b's point - of a's) + offset, the offset from immovable
+/// bodies; of a turning D (w_b - w_a) + offset.
 struct Coupling {
   static constexpr std::uint32_t kImmovable = ~0u;
   std::uint32_t a = kImmovable, b = kImmovable;  ///< Positions.
@@ -22,6 +23,7 @@ struct Coupling {
   Vec3 rA, rB;
   Mat3 D;  ///< Rows: directions. Zero where the coupling has fewer than three.
   Vec3 offset;
+  bool turns = false;
 };
 
 class VelocitySystem {
@@ -35,6 +37,7 @@ class VelocitySystem {
   /// Of those contacts, then rows, that can be moved at all, in their order.
   Coupling make_coupling(const PointContact& c) const;
   Coupling make_coupling(const ScalarRow& row) const;
+  Coupling make_coupling(const Turning& turning) const;
 
   /// v, w of the problem's bodies; v0, w0 of them.
   void load_velocities(std::vector<Vec6>& v) const;

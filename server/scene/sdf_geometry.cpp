@@ -230,10 +230,19 @@ void read_geometry(SdfElement geometry, BodyType type, GeometryDefinition& defin
   if (const std::string reason = check_shape(definition.shape); !reason.empty()) shape.fail(reason);
 }
 
-double read_friction(SdfElement& surface) {
+/// Gazebo's moment of a patch of radius a: 3 pi/16 mu a N.
+double read_torsional(SdfElement& torsional) {
+  const double coefficient = torsional.number("coefficient", Range::non_negative).value_or(1.0);
+  const double radius = torsional.number("patch_radius", Range::non_negative).value_or(0.0);
+  torsional.finish();
+  constexpr double kPatch = 3.0 * 3.14159265358979323846 / 16.0;
+  return kPatch * coefficient * radius;
+}
+
+void read_friction(SdfElement& surface, Material& material) {
   std::optional<SdfElement> friction = surface.child("friction");
-  if (!friction) return kDefaultFriction;
-  double mu = kDefaultFriction;
+  if (!friction) return;
+  double& mu = material.friction;
   if (std::optional<SdfElement> ode = friction->child("ode")) {
     mu = ode->number("mu", Range::non_negative).value_or(kDefaultFriction);
     if (std::optional<SdfElement> second = ode->child("mu2")) {
@@ -244,8 +253,12 @@ double read_friction(SdfElement& surface) {
     }
     ode->finish();
   }
+  if (std::optional<SdfElement> torsional = friction->child("torsional"))
+    material.torsional_friction = read_torsional(*torsional);
+  if (const auto own = friction->number("tumble:torsional_friction", Range::non_negative))
+    material.torsional_friction = *own;
+  material.rolling_friction = friction->number("tumble:rolling_friction", Range::non_negative).value_or(0.0);
   friction->finish();
-  return mu;
 }
 
 void read_bounce(SdfElement& surface, Material& material) {
@@ -281,7 +294,7 @@ GeometryDefinition read_collision(SdfElement& collision, BodyType type) {
   read_geometry(collision.required_child("geometry"), type, geometry);
   geometry.material.friction = kDefaultFriction;
   if (std::optional<SdfElement> surface = collision.child("surface")) {
-    geometry.material.friction = read_friction(*surface);
+    read_friction(*surface, geometry.material);
     read_bounce(*surface, geometry.material);
     surface->finish();
   }

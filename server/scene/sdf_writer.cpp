@@ -162,9 +162,13 @@ void write_collision(tinyxml2::XMLPrinter& out, const GeometryDefinition& geomet
   Tag surface(out, "surface");
   {
     Tag friction(out, "friction");
-    Tag ode(out, "ode");
-    write(out, "mu", geometry.material.friction);
-    write(out, "mu2", geometry.material.friction);
+    {
+      Tag ode(out, "ode");
+      write(out, "mu", geometry.material.friction);
+      write(out, "mu2", geometry.material.friction);
+    }
+    write(out, "tumble:torsional_friction", geometry.material.torsional_friction);
+    write(out, "tumble:rolling_friction", geometry.material.rolling_friction);
   }
   Tag bounce(out, "bounce");
   write(out, "restitution_coefficient", geometry.material.restitution);

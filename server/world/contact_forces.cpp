@@ -25,6 +25,7 @@ void read_points(const World& world, const Contact& contact, std::vector<Contact
     force.p_W = X_WA * point.p_A;
     force.separation = point.separation;
     force.force_W = contact.impulse[i] / world.options().time_step;
+    force.moment_W = contact.moment[i] / world.options().time_step;
     forces.push_back(force);
   }
 }
@@ -51,9 +52,9 @@ ContactLoad sum_contact_forces(const World& world, BodyId body) {
   if (!world.is_valid(body)) return load;
   const Vec3 x = world.motion(body.index).x;
   for (const ContactForce& contact : read_contact_forces(world, body)) {
-    const Vec3 force = contact.b.index == body.index ? contact.force_W : Vec3(-contact.force_W);
-    load.force += force;
-    load.torque += Vec3(contact.p_W - x).cross(force);
+    const double sign = contact.b.index == body.index ? 1.0 : -1.0;
+    load.force += sign * contact.force_W;
+    load.torque += sign * (Vec3(contact.p_W - x).cross(contact.force_W) + contact.moment_W);
   }
   return load;
 }

@@ -17,6 +17,7 @@ struct ContactForce {
   Vec3 normal_W = Vec3::Zero();                  ///< Unit, from a to b.
   double separation = 0.0;                       ///< Gap along the normal [m]; < 0: overlap.
   Vec3 force_W = Vec3::Zero();                   ///< On b, mean over the step [N]; a feels the opposite.
+  Vec3 moment_W = Vec3::Zero();                  ///< On b, of rolling and torsional friction, likewise [N m].
 };
 
 /// Of every point of every pair within the contact margin, also of those that carry nothing, in the order of the pairs.

@@ -14,7 +14,8 @@ struct Contact {
   GeometryPair pair;
   std::uint32_t body_a = 0, body_b = 0;
   double friction = 0.0, restitution = 0.0;
-  double threshold = 0.0;  ///< [m/s] impacts slower than it do not bounce.
+  double rolling = 0.0, torsional = 0.0;  ///< [m]
+  double threshold = 0.0;                 ///< [m/s] impacts slower than it do not bounce.
   /// Fast: crosses a good part of the smaller geometry in a step. Flies: no part of the smooth problem; the two meet,
   /// if at all, in an impact.
   bool fast = false, flies = false;
@@ -26,6 +27,8 @@ struct Contact {
   Vec3 normal_W = Vec3::UnitZ();  ///< The manifold's normal in W at the last query.
   /// Impulses of the last solve on b at each manifold point, as vectors in W [N s]: the warm start.
   std::array<Vec3, kMaxManifoldPoints> impulse;
+  /// Moments of turning friction [N m s], likewise.
+  std::array<Vec3, kMaxManifoldPoints> moment;
 };
 
 class ContactGraph {

@@ -15,7 +15,10 @@
 namespace tumble {
 
 struct Material {
-  double friction = 0.5;     ///< Coulomb's mu, >= 0. Of a pair: sqrt(mu_a mu_b).
+  double friction = 0.5;  ///< Coulomb's mu, >= 0. Of a pair: sqrt(mu_a mu_b).
+  /// [m], >= 0: the contact resists rolling by a moment of up to rolling_friction N, and turning about its normal by up to
+  /// torsional_friction N. Of a pair the larger. 0: none.
+  double rolling_friction = 0.0, torsional_friction = 0.0;
   double restitution = 0.0;  ///< C_r, 0..1. Of a pair: the larger.
   double density = 1000.0;   ///< [kg/m^3], > 0; used where a body gives no inertia of its own.
   /// [m/s] impacts slower than it do not bounce, >= 0. None: the world's option. Of a pair the larger.

@@ -235,6 +235,7 @@ void World::build_blow_problem(const Blow& blow) {
     }
   }
   for (const std::uint32_t index : ties_of(blow)) add_held_rows(index);
+  problem.turnings.clear();  // a blow is over before anything turns
   end_problem();
   if (!blow.tired) return;
   for (PointContact& c : problem.contacts) c.restitution = 0.0;

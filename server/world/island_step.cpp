@@ -165,9 +165,19 @@ void World::add_contact_rows(std::uint32_t contact_index, double h) {
       const Vec3& impulse = contact.impulse[static_cast<std::size_t>(i)];
       row.lambda = Vec3(impulse.dot(row.n), impulse.dot(row.t1), impulse.dot(row.t2));
     }
+    if (contact.rolling > 0.0 || contact.torsional > 0.0)
+      add_turning(row, contact, contact.moment[static_cast<std::size_t>(i)]);
     scratch_.problem.contacts.push_back(row);
     scratch_.contact_source.push_back({contact_index, static_cast<std::uint32_t>(i)});
   }
+}
+
+void World::add_turning(const PointContact& row, const Contact& contact, const Vec3& moment) {
+  Turning turning{.contact = static_cast<std::uint32_t>(scratch_.problem.contacts.size()),
+                  .rolling = contact.rolling,
+                  .torsional = contact.torsional};
+  if (options_.warm_start) turning.lambda = Vec3(moment.dot(row.n), moment.dot(row.t1), moment.dot(row.t2));
+  scratch_.problem.turnings.push_back(turning);
 }
 
 void World::add_tie_rows(std::uint32_t tie_index, double h) {
@@ -203,6 +213,12 @@ void World::store_impulses() {
     const Vec3 impulse = in_world(row, row.lambda) / scratch_.impulse_share;
     contacts_.all()[source.contact].impulse[source.point] =
         impulse.allFinite() ? impulse : Vec3(Vec3::Zero());
+  }
+  for (const Turning& turning : scratch_.problem.turnings) {
+    const Scratch::Source source = scratch_.contact_source[turning.contact];
+    const Vec3 moment =
+        in_world(scratch_.problem.contacts[turning.contact], turning.lambda) / scratch_.impulse_share;
+    contacts_.all()[source.contact].moment[source.point] = moment.allFinite() ? moment : Vec3(Vec3::Zero());
   }
   for (std::size_t i = 0; i < scratch_.problem.rows.size(); ++i) {
     const double lambda = scratch_.problem.rows[i].lambda / scratch_.impulse_share;

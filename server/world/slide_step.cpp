@@ -74,6 +74,7 @@ void World::solve_part(std::size_t island, const StepContext& part) {
     c.lambda *= scratch_.impulse_share;
   }
   for (ScalarRow& row : scratch_.problem.rows) row.lambda *= scratch_.impulse_share;
+  for (Turning& turning : scratch_.problem.turnings) turning.lambda *= scratch_.impulse_share;
   prepare(scratch_.problem, part.bounds);
   StepContext sharp = part;
   sharp.solver_settings.tolerance =

@@ -213,11 +213,14 @@ Contact World::make_contact(GeometryPair pair) const {
   contact.body_a = a.body;
   contact.body_b = b.body;
   contact.friction = std::sqrt(a.material.friction * b.material.friction);
+  contact.rolling = std::max(a.material.rolling_friction, b.material.rolling_friction);
+  contact.torsional = std::max(a.material.torsional_friction, b.material.torsional_friction);
   contact.restitution = std::max(a.material.restitution, b.material.restitution);
   contact.threshold = std::max(a.material.restitution_threshold.value_or(options_.restitution_threshold),
                                b.material.restitution_threshold.value_or(options_.restitution_threshold));
   contact.flies = true;
   contact.impulse.fill(Vec3::Zero());
+  contact.moment.fill(Vec3::Zero());
   return contact;
 }
 

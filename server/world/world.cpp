@@ -23,6 +23,8 @@ constexpr double kMaxForce = 1e15;  // [N, N m]
 
 void check_material(const Material& material) {
   check_range("friction", material.friction, 0.0, kMaxFriction);
+  check_range("rolling friction", material.rolling_friction, 0.0, kMaxFriction);
+  check_range("torsional friction", material.torsional_friction, 0.0, kMaxFriction);
   check_range("restitution", material.restitution, 0.0, 1.0);
   check_range("density", material.density, 1e-9, 1e9);
   if (const auto threshold = material.restitution_threshold) {

@@ -163,7 +163,7 @@ class World {
     struct Source {
       std::uint32_t contact, point;
     };
-    std::vector<Source> contact_source;
+    std::vector<Source> contact_source;  // also of turnings, by their contacts
     struct RowSource {
       std::uint32_t tie, row;
     };
@@ -295,6 +295,7 @@ class World {
   void solve_problem(const StepContext& step);
   std::uint32_t problem_body(std::uint32_t slot, double h);
   void add_contact_rows(std::uint32_t contact_index, double h);
+  void add_turning(const PointContact& row, const Contact& contact, const Vec3& moment);
   void add_tie_rows(std::uint32_t tie_index, double h);
   void add_row(ScalarRow row, std::uint32_t tie_index, std::uint32_t index);
   void store_impulses();

@@ -211,6 +211,28 @@ TEST(Sdf, SurfaceDensityAndColour) {
   EXPECT_EQ(d.color, GeometryDefinition{}.color);
 }
 
+TEST(Sdf, FrictionAgainstTurning) {
+  const auto material = [](const std::string& friction) {
+    return read_body(
+               in_link("<collision name='c'><geometry><sphere><radius>1</radius></sphere></geometry><surface>"
+                       "<friction>" +
+                       friction + "</friction></surface></collision>"))
+        .geometries.at(0)
+        .material;
+  };
+  const Material own = material(
+      "<tumble:torsional_friction>0.25</tumble:torsional_friction>"
+      "<tumble:rolling_friction>0.5</tumble:rolling_friction>");
+  EXPECT_EQ(own.torsional_friction, 0.25);
+  EXPECT_EQ(own.rolling_friction, 0.5);
+  const Material gazebo =
+      material("<torsional><coefficient>0.5</coefficient><patch_radius>0.1</patch_radius></torsional>");
+  EXPECT_NEAR(gazebo.torsional_friction, 3.0 * 3.14159265358979 / 16.0 * 0.05, 1e-15);
+  EXPECT_EQ(gazebo.rolling_friction, 0.0);
+  EXPECT_EQ(material("<torsional><coefficient>2</coefficient></torsional>").torsional_friction, 0.0);
+  EXPECT_EQ(material("<ode><mu>0.5</mu></ode>").torsional_friction, 0.0);
+}
+
 TEST(Sdf, SpringsAndRopesJoinAnchors) {
   const SceneReading reading = read(in_world(
       ball_model("a") + ball_model("b", "<pose>0 3 0 0 0 0</pose>") +

@@ -384,6 +384,7 @@ void World::set_time_step(double time_step) {
   for (ActivePush& active : pushes_) active.steps_left /= ratio;
   for (Contact& contact : contacts_.all()) {
     for (Vec3& impulse : contact.impulse) impulse *= ratio;
+    for (Vec3& moment : contact.moment) moment *= ratio;
   }
   for (Tie& tie : ties_) {
     for (double& lambda : tie.lambda) lambda *= ratio;

@@ -41,7 +41,11 @@ World heap(std::size_t count, std::size_t width, bool mixed) {
     const double x = 0.5 * static_cast<double>(i % width) - half + 0.35;
     const double y = 0.5 * static_cast<double>(i / width % width) - half + 0.35;
     const double z = 0.5 * static_cast<double>(i / (width * width)) + 0.4;
-    BodyDefinition definition = body("body" + std::to_string(i), heap_shape(i, mixed), Vec3(x, y, z));
+    // Without friction against turning a ball or cylinder on the flat rolls and spins for ever.
+    const double turning = mixed ? 2e-3 : 0.0;
+    const Material material{.rolling_friction = turning, .torsional_friction = turning};
+    BodyDefinition definition =
+        body("body" + std::to_string(i), heap_shape(i, mixed), Vec3(x, y, z), material);
     definition.X_WL.q = tilted(i, 0.7);
     world.create_body(definition);
   }
@@ -50,9 +54,9 @@ World heap(std::size_t count, std::size_t width, bool mixed) {
 
 void expect_rest(World world, double limit, double creep_time, const char* name) {
   const double time = run_to_rest(world, limit);
-  EXPECT_LE(time, limit - 0.1) << name;
+  EXPECT_LE(time, limit - 0.1) << name;  // 30 boxes: 1.3 s, mixed: 3.2 s
   EXPECT_EQ(world.counters().non_finite_contained, 0u) << name;
-  EXPECT_LE(world.report().deepest_penetration, 1e-3) << name;
+  EXPECT_LE(world.report().deepest_penetration, 1e-3) << name;  // 30 boxes: 2e-9 m, mixed: 1.2e-6 m
   const World rested = world;
   run(world, static_cast<int>(creep_time / world.options().time_step));
   EXPECT_LE(largest_displacement(rested, world), 0.0) << name;

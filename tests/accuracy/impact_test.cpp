@@ -168,7 +168,7 @@ TEST(Impact, ALossyCradleOfSeveralHandsOnWhatPairAfterPairWould) {
   for (const double h : kImpactSteps) {
     for (const double gap : {0.0, 1e-9}) {
       for (int arriving = 1; arriving <= 4; ++arriving) {
-        World world = cradle(arriving, gap, 0.9, h);
+        World world = cradle(arriving, gap, 0.9, with_step(h));
         run(world, static_cast<int>(std::lround(1.0 / h)));
         const std::array<double, 5> expected = lossy_cradle(arriving, 1e-9, 0.9);
         for (std::uint32_t i = 0; i < 5; ++i) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "math/rotation.h"
+#include "support/gravity.h"
 #include "support/world_builder.h"
 #include "world/world.h"
 
@@ -13,8 +14,6 @@ namespace tumble {
 namespace {
 
 using namespace test;
-
-constexpr double kG = 9.81;  // [m/s^2]
 
 /// Gravity of a plane that falls by `slope` [rad] towards `heading` [rad from x].
 Vec3 tilted_gravity(double slope, double heading) {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "math/rotation.h"
+#include "support/gravity.h"
 #include "support/world_builder.h"
 #include "world/world.h"
 
@@ -13,7 +14,6 @@ namespace {
 
 using namespace test;
 
-constexpr double kG = 9.81;  // [m/s^2]
 constexpr double kSteps[] = {1.0 / 60.0, 1.0 / 240.0, 1e-3};
 
 Motion launch(const Shape& shape, double height, double friction, const Vec3& v, const Vec3& w, double t,

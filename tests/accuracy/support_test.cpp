@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "support/gravity.h"
 #include "support/standing_scenes.h"
 #include "world/contact_forces.h"
 
@@ -10,8 +11,6 @@ namespace tumble {
 namespace {
 
 using namespace test;
-
-constexpr double kG = 9.81;  // [m/s^2]
 
 /// Force that pair a, b exchanges, on b [N].
 Vec3 force_between(const World& world, BodyId a, BodyId b) {

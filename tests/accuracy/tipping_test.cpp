@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "math/rotation.h"
+#include "support/gravity.h"
 #include "support/world_builder.h"
 #include "world/world.h"
 
@@ -12,8 +13,6 @@ namespace tumble {
 namespace {
 
 using namespace test;
-
-constexpr double kG = 9.81;  // [m/s^2]
 
 /// How far the box's upward axis has turned from the vertical after `t` [rad, small].
 double tilt_of(const World& world, BodyId id) {

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "support/gravity.h"
 #include "support/world_builder.h"
 #include "world/contact_forces.h"
 
@@ -12,7 +13,7 @@ namespace {
 
 using namespace test;
 
-constexpr double kG = 9.81, kRadius = 0.3;  // [m/s^2], [m]
+constexpr double kRadius = 0.3;  // [m]
 
 struct Way {
   Solver solver;

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "stability/case.h"
+#include "support/gravity.h"
 #include "support/world_builder.h"
 
 namespace tumble::stability {
@@ -9,7 +10,7 @@ namespace {
 
 using namespace test;
 
-constexpr double kG = 9.81, kSlope = 0.4;  // [m/s^2], [rad]
+constexpr double kSlope = 0.4;  // [rad]
 
 /// Runs a block on a plane with mu = tan(slope) + excess for so long; returns its way down.
 double slide(Trial& trial, double excess, double seconds) {

@@ -8,10 +8,10 @@
 
 #include "dynamics/solver.h"
 #include "math/rotation.h"
+#include "support/gravity.h"
 
 namespace tumble::test {
 
-inline constexpr double kG = 9.81;            // [m/s^2]
 inline constexpr double kStep = 1.0 / 240.0;  // [s]
 inline const Vec3 kGravity(0.0, 0.0, -kG);
 

@@ -5,14 +5,13 @@
 
 #include <cmath>
 
+#include "support/gravity.h"
 #include "support/world_builder.h"
 
 namespace tumble {
 namespace {
 
 using namespace test;
-
-constexpr double kG = 9.81;
 
 TEST(ContactForces, ARestingBodyIsHeldByItsWeightWhoseTorqueIsNone) {
   World world;

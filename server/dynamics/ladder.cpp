@@ -10,9 +10,12 @@
 namespace tumble {
 namespace {
 
-/// Solutions are sought a tenth below the tolerance or rounding, so that they are accepted as warm starts of the steps that follow.
+/// Solutions are sought a tenth below the tolerance or rounding, so that they are accepted as warm starts of the steps
+/// that follow.
 constexpr double kMargin = 0.1;
 constexpr std::size_t kFewContacts = 8;
+/// Of the speeds, and of 1 m/s: residuals below which no rung gets reliably; a single body's sweeps get to the last digit.
+constexpr double kRounding = 1e-11, kRoundingOfSmall = 1e-15;
 
 double largest_impulse(const ContactProblem& problem) {
   double largest = 0.0;
@@ -39,7 +42,8 @@ Ladder::Ladder(ContactProblem& problem, const SolverSettings& settings)
     const Vec3 u = relative_velocity(problem.bodies[c.a], problem.bodies[c.b], c.rA, c.rB);
     speed_ = std::max(speed_, std::sqrt(u.squaredNorm()));
   }
-  wanted_ = std::max(kMargin * settings.tolerance, kMargin * kRounding * (1.0 + speed_));
+  rounding_ = (is_small() ? kRoundingOfSmall : kRounding) * (1.0 + speed_);
+  wanted_ = kMargin * std::max(settings.tolerance, rounding_);
 }
 
 bool Ladder::is_small() const {

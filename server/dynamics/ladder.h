@@ -20,9 +20,7 @@ class Ladder {
   /// The warm start is a solution.
   bool accepted() const { return report_.accepted; }
   /// To what was asked for, or to rounding, below which no rung gets reliably.
-  bool solved() const {
-    return accepted() || best_.residual() < std::max(wanted_, kRounding * (1.0 + speed_));
-  }
+  bool solved() const { return accepted() || best_.residual() < std::max(wanted_, rounding_); }
   /// A single body with up to two faces' contacts: sweeps cost less than one factorization.
   bool is_small() const;
   /// Fastest velocity of a body at the start of the step [m/s or rad/s].
@@ -43,16 +41,14 @@ class Ladder {
   double wanted() const { return wanted_; }
 
  private:
-  static constexpr double kRounding = 1e-11;  // of the speeds, and of 1 m/s
-
   bool is_plausible() const;
   VelocitySystem& system();
 
   ContactProblem& problem_;
   const SolverSettings& settings_;
-  double wanted_ = 0.0;  // [m/s]
-  double mass_ = 0.0;    // [kg] of the movable bodies
-  double speed_ = 0.0;   // [m/s] fastest approach at a contact, or body
+  double rounding_ = 0.0, wanted_ = 0.0;  // [m/s]
+  double mass_ = 0.0;                     // [kg] of the movable bodies
+  double speed_ = 0.0;                    // [m/s] fastest approach at a contact, or body
   int movable_ = 0;
   BestImpulses best_;
   SolverReport report_;

@@ -103,7 +103,7 @@ def test_a_packed_world_looks_the_same(start):
         with World(name, timeout=10.0) as world:
             world.pause()
             world.reset()
-            world["row_0_0"].push(force=(3000, 500, 900), torque=(0, 50, 9), seconds=0.1)
+            world["row_19_0"].push(force=(3000, 500, 90000), torque=(0, 50, 9), seconds=0.1)  # the top one
             states.append(world.step(60))
             assert world["ground"].description.type == "static"
     exact, packed = states

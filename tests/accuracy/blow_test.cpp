@@ -35,20 +35,8 @@ TEST(Blow, ASuperballOnAHeavyBallLeavesWithTheClosedForm) {
 }
 
 TEST(Blow, ABreakOfFifteenBallsIsSymmetricAndKeepsMomentumAndEnergy) {
-  const Material elastic{.friction = 0.0, .restitution = 1.0};
   for (const double h : kImpactSteps) {
-    World world(weightless(h));
-    const double r = 0.0286;
-    BodyDefinition cue = body_of_mass("cue", Sphere{r}, 0.17, Vec3(-0.5, 0, 0), elastic);
-    cue.v_WB = Vec3(5, 0, 0);
-    world.create_body(cue);
-    for (int row = 0; row < 5; ++row) {
-      for (int i = 0; i <= row; ++i) {
-        const Vec3 place(std::sqrt(3.0) * r * row, r * (2 * i - row), 0);
-        world.create_body(
-            body_of_mass("ball" + std::to_string(row) + std::to_string(i), Sphere{r}, 0.17, place, elastic));
-      }
-    }
+    World world = billiard_break(with_step(h), 0.0);
     const Conserved before = world.compute_conserved();
     while (world.time() < 0.3) world.step();
     const Conserved after = world.compute_conserved();

@@ -77,12 +77,6 @@ class Listener:
                 "state_bytes": state_size / len(frames), "p50": np.percentile(ages, 50), "p99": np.percentile(ages, 99)}
 
 
-def cpu_seconds(pid):
-    with open(f"/proc/{pid}/stat", encoding="ascii") as file:
-        fields = file.read().rsplit(")", 1)[1].split()
-    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
-
-
 def logger_loss(folder):
     """Of the states: what lcm-logger writes against what was sent, by the numbers of the messages of each publication."""
     path = folder / "logger.lcm"
@@ -127,9 +121,9 @@ def measure(link, folder, count, encoding):
             world.wait_for(lambda: not len(world._outbox), 60.0)  # pylint: disable=protected-access
         listener = Listener()
         listener.listen(0.5)
-        before = cpu_seconds(server.process.pid)
+        before = server.processor_seconds()
         heard = listener.listen(SECONDS)
-        cpu = (cpu_seconds(server.process.pid) - before) / SECONDS
+        cpu = (server.processor_seconds() - before) / SECONDS
         listener.socket.close()
         logged = logger_loss(folder)
         p50, p99 = latency(count)

@@ -9,6 +9,8 @@
 namespace tumble::test {
 
 std::vector<std::uint8_t> read_input(const std::filesystem::path& path);
+/// In hex, on one line.
+void print_input(const std::vector<std::uint8_t>& input);
 /// The file itself, or all in the folder.
 std::set<std::filesystem::path> files_below(const std::filesystem::path& path);
 

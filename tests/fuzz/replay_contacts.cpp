@@ -34,9 +34,8 @@ void replay(const Bytes& bytes, const std::string& name, const std::string& fold
   ++tally.outcomes[verdict.outcome];
   if (verdict.broken.empty()) return;
   ++tally.broken;
-  fmt::print("{}: {} against {}: {}\n ", name, shape_name(pair->a), shape_name(pair->b), verdict.broken);
-  for (const std::uint8_t byte : bytes) fmt::print("{:02x}", byte);
-  fmt::print("\n");
+  fmt::print("{}: {} against {}: {}\n", name, shape_name(pair->a), shape_name(pair->b), verdict.broken);
+  print_input(bytes);
   if (folder.empty()) return;
   std::ofstream(std::filesystem::path(folder) / name, std::ios::binary)
       .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));

@@ -28,9 +28,8 @@ void replay(const Input& input, const std::string& name, Tally& tally) {
   tally.applied += verdict.applied;
   if (verdict.broken.empty()) return;
   ++tally.broken;
-  fmt::print("{}: {}\n ", name, verdict.broken);
-  for (const std::uint8_t byte : input) fmt::print("{:02x}", byte);
-  fmt::print("\n");
+  fmt::print("{}: {}\n", name, verdict.broken);
+  print_input(input);
 }
 
 /// Bytes changed, cut out and doubled at one to eight places.

@@ -30,6 +30,12 @@ class Server:
     def running(self):
         return self.process.poll() is None
 
+    def processor_seconds(self):
+        """Used so far, by all of its threads."""
+        with open(f"/proc/{self.process.pid}/stat", encoding="ascii") as file:
+            fields = file.read().rsplit(")", 1)[1].split()
+        return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
     def wait_for_output(self, text, seconds=5.0):
         """Returns when `text` was printed; fails with everything that was, after `seconds` or the process's end."""
         deadline = time.monotonic() + seconds

@@ -1,7 +1,6 @@
 """Floods: ten thousand commands a second and fifty thousand datagrams of garbage cost the server a part of its processor
 time that leaves room for the steps, and no memory. Whether a tick was missed depends on what else the machine does, so it
 is told and not asserted."""
-import os
 import random
 import socket
 import struct
@@ -9,20 +8,14 @@ import time
 
 import pytest
 from server import SCENES
+from wire import GROUP
 
-GROUP = ("239.255.76.67", 7667)
 RATE = 240  # steps a second
 ATTEMPTS = 4  # what else runs on this machine takes ticks and room in buffers too
 
 
 def short_message(channel, payload):
     return b"LC02" + struct.pack(">I", 0) + channel + b"\0" + payload
-
-
-def processor_seconds(pid):
-    with open(f"/proc/{pid}/stat", encoding="ascii") as file:
-        fields = file.read().rsplit(")", 1)[1].split()
-    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
 
 def peak_memory(pid):
@@ -54,10 +47,10 @@ def flood(server, wire, make_datagrams, accepted=0):
     cheapest, memory = 1e9, peak_memory(server.process.pid)
     for _ in range(ATTEMPTS):
         datagrams = make_datagrams()
-        before, used = present_stats(wire), processor_seconds(server.process.pid)
+        before, used = present_stats(wire), server.processor_seconds()
         send_for_a_second(datagrams)
         after = present_stats(wire)
-        cheapest = min(cheapest, processor_seconds(server.process.pid) - used)
+        cheapest = min(cheapest, server.processor_seconds() - used)
         applied = after.commands_applied - before.commands_applied
         # What the kernel had no room for was counted, and is for the clients to send again.
         assert applied + after.commands_dropped - before.commands_dropped >= accepted

@@ -5,9 +5,7 @@ import socket
 import struct
 
 import pytest
-from wire import MALFORMED
-
-GROUP = ("239.255.76.67", 7667)
+from wire import GROUP, MALFORMED
 
 
 def malformed(wire):

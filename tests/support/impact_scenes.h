@@ -131,6 +131,26 @@ inline EnergyError measure_energy(World& world, double seconds) {
   return error;
 }
 
+/// Fifteen elastic billiard balls racked along x, touching, the cue ball on its way to them with 5 m/s, `offset` [m] beside
+/// their axis; no gravity.
+inline World billiard_break(Options options, double offset) {
+  options.gravity.setZero();
+  const Material elastic{.friction = 0.0, .restitution = 1.0};
+  World world(options);
+  const double r = 0.0286;  // [m]
+  BodyDefinition cue = body_of_mass("cue", Sphere{r}, 0.17, Vec3(-0.5, offset, 0), elastic);
+  cue.v_WB = Vec3(5, 0, 0);
+  world.create_body(cue);
+  for (int row = 0; row < 5; ++row) {
+    for (int i = 0; i <= row; ++i) {
+      const Vec3 place(std::sqrt(3.0) * r * row, r * (2 * i - row), 0);
+      world.create_body(
+          body_of_mass("ball" + std::to_string(row) + std::to_string(i), Sphere{r}, 0.17, place, elastic));
+    }
+  }
+  return world;
+}
+
 /// A ball over the ground, as high as `height` [m] and rising at `speed` [m/s].
 struct Bouncing {
   double height, speed;

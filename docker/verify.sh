@@ -97,8 +97,8 @@ unpack_compose() { # Compose v2 as users have it, from a newer release, beside t
   list_sources "$SUITE" | awk -v suite="$COMPOSE_SUITE" '{ $3 = suite; print }' >"$apt/sources.list"
   local options=(-qq -o Dir::Etc::sourcelist="$apt/sources.list" -o Dir::Etc::sourceparts="$apt/parts"
     -o Dir::State::lists="$apt/lists" -o Dir::Cache="$apt/cache" -o APT::Sandbox::User=root)
-  timeout 120 apt-get "${options[@]}" update &&
-    (cd "$apt" && timeout 120 apt-get "${options[@]}" download docker-compose && dpkg -x ./*.deb "$tools") &&
+  timeout 600 apt-get "${options[@]}" update &&
+    (cd "$apt" && timeout 600 apt-get "${options[@]}" download docker-compose && dpkg -x ./*.deb "$tools") &&
     cp "$tools"/usr/libexec/docker/cli-plugins/* "$DOCKER_CONFIG/cli-plugins/"
 }
 

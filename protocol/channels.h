@@ -33,6 +33,7 @@ inline constexpr std::string_view kQuerySuffix = "_QUERY";      ///< query_t
 // In logs only:
 inline constexpr std::string_view kRecordingSuffix = "_RECORDING";  ///< recording_t
 inline constexpr std::string_view kStepSuffix = "_STEP";            ///< step_record_t
+inline constexpr std::string_view kSnapshotSuffix = "_SNAPSHOT";    ///< snapshot_t
 
 inline std::string channel_name(std::string_view world, std::string_view suffix) {
   return std::string(world).append(suffix);

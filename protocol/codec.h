@@ -20,6 +20,7 @@
 #include "tumble/pushes_t.hpp"
 #include "tumble/query_t.hpp"
 #include "tumble/recording_t.hpp"
+#include "tumble/snapshot_t.hpp"
 #include "tumble/state_t.hpp"
 #include "tumble/stats_t.hpp"
 #include "tumble/step_record_t.hpp"
@@ -61,6 +62,7 @@ Malformed decode(Bytes bytes, query_t& message);
 Malformed decode(Bytes bytes, hits_t& message);
 Malformed decode(Bytes bytes, recording_t& message);
 Malformed decode(Bytes bytes, step_record_t& message);
+Malformed decode(Bytes bytes, snapshot_t& message);
 
 /// The sender of a force_command_t or control_t that `decode` refused; {0, 0} if the bytes don't name one.
 Sender read_sender(Bytes bytes);

@@ -12,7 +12,8 @@ namespace tumble {
 namespace {
 
 constexpr int kBadArguments = 2;
-constexpr double kRecordInterval = 0.1;  // [s]
+constexpr double kRecordInterval = 0.1;     // [s]
+constexpr double kSnapshotInterval = 10.0;  // [s]
 
 std::string join_demo_names() {
   std::string names;
@@ -73,6 +74,13 @@ void add_log_options(CLI::App& app, Arguments& a) {
   app.add_option("--record-interval", a.record_interval,
                  "Simulated seconds between two pictures of the world in the log (default 0.1)")
       ->check(number_within(1e-6, 1e6))
+      ->needs(record);
+  a.snapshot_interval = kSnapshotInterval;
+  app.add_option(
+         "--snapshot-interval", a.snapshot_interval,
+         "Simulated seconds between two snapshots of the inner state in the log, from the last of which "
+         "--resume goes on (default 10; 0: none)")
+      ->check(number_within(0.0, 1e6))
       ->needs(record);
   const std::string logged = "its scene and options are the log's";
   auto* replay =

@@ -26,6 +26,7 @@ struct Arguments {
   bool json = false;
   std::string record, replay, resume;  ///< Paths of logs; at most one is not empty.
   double record_interval = 0.0;        ///< Simulated time between two pictures in the log [s].
+  double snapshot_interval = 0.0;      ///< The same between two snapshots; 0: none.
   bool print_scene = false, list_demos = false, health = false;
 
   /// With a fixed number of steps as fast as possible nobody can listen: no bus is opened unless a URL asks for it.

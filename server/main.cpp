@@ -108,6 +108,7 @@ recording_t make_head(const Arguments& arguments, const ServerSettings& settings
   head.dt = start.world().options().time_step;
   head.rate = settings.rate;
   head.interval = arguments.record_interval;
+  head.snapshot_interval = arguments.snapshot_interval;
   head.state_hash = std::bit_cast<std::int64_t>(start.world().state_hash());
   head.scene = scene;
   return head;
@@ -154,11 +155,12 @@ int run_replay(const Arguments& arguments, Clock& clock) {
   fmt::print(stderr, "{}\n", replay_text(replay));
   watch.print(replay.simulation().world(), replay.steps(), arguments.json);
   const bool damaged = replay.damage() && !replay.damage()->cut;
-  return replay.difference() || damaged ? kFailed : 0;
+  return replay.difference() || damaged || !replay.bad_snapshots().empty() ? kFailed : 0;
 }
 
 int run_resumed(const Arguments& arguments, Clock& clock) {
   Replay replay(arguments.resume);
+  replay.skip_to_last_snapshot();
   replay.run({}, stop_requested);
   fmt::print(stderr, "{}\n", replay_text(replay));
   if (stop_requested != 0) return 0;

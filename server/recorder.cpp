@@ -6,9 +6,18 @@
 #include <cmath>
 #include <utility>
 
+#include "snapshot.h"
 #include "stats.h"
 
 namespace tumble {
+namespace {
+
+/// At least one.
+std::int64_t steps_of(double interval, double dt) {
+  return std::max<std::int64_t>(1, std::llround(interval / dt));
+}
+
+}  // namespace
 
 Recorder::Recorder(EventLogWriter log, const recording_t& head, const StepChecksum& checksum)
     : log_(std::move(log)),
@@ -17,7 +26,9 @@ Recorder::Recorder(EventLogWriter log, const recording_t& head, const StepChecks
       control_channel_(channel_name(world_name_, kControlSuffix)),
       step_channel_(channel_name(world_name_, kStepSuffix)),
       stats_channel_(channel_name(world_name_, kStatsSuffix)),
-      picture_steps_(std::max<std::int64_t>(1, std::llround(head.interval / head.dt))),
+      snapshot_channel_(channel_name(world_name_, kSnapshotSuffix)),
+      picture_steps_(steps_of(head.interval, head.dt)),
+      snapshot_steps_(head.snapshot_interval > 0.0 ? steps_of(head.snapshot_interval, head.dt) : 0),
       checksum_(checksum),
       publisher_(world_name_, kLoopbackPayload) {}
 
@@ -47,7 +58,7 @@ void Recorder::note_command(const Command& command, std::int64_t start_step, std
   checksum_.add_command(bytes_);
 }
 
-void Recorder::end_step(const Simulation& simulation, std::int64_t utime) {
+void Recorder::end_step(const Simulation& simulation, const CommandInbox& inbox, std::int64_t utime) {
   step_record_t record{};
   record.utime = utime;
   record.session = simulation.session();
@@ -57,8 +68,15 @@ void Recorder::end_step(const Simulation& simulation, std::int64_t utime) {
   record.checksum = checksum_.finish(record);
   write(utime, step_channel_, record);
   checksum_ = {};
+  if (++since_snapshot_ == snapshot_steps_) write_snapshot(simulation, inbox, utime);
   const bool is_new = simulation.session() != view_.session;
   if (is_new || simulation.now_step() % picture_steps_ == 0) write_picture(simulation, utime);
+}
+
+void Recorder::write_snapshot(const Simulation& simulation, const CommandInbox& inbox, std::int64_t utime) {
+  since_snapshot_ = 0;
+  send_parts(take_snapshot(simulation, inbox), utime,
+             [&](const snapshot_t& part) { write(utime, snapshot_channel_, part); });
 }
 
 void Recorder::write_picture(const Simulation& simulation, std::int64_t utime) {

@@ -1,6 +1,6 @@
 // Writes a run to a log from which it can be repeated to the bit: the scene, every command with the step at which it
-// acts, after each step the hash of the world, and at an interval a picture of it (catalogue, states, statistics) for
-// everyone who reads LCM logs. Commands are written before they are answered, so that nothing accepted is ever lost.
+// acts, after each step the hash of the world, at an interval a picture of it (catalogue, states, statistics) for everyone
+// who reads LCM logs, and at a longer one a snapshot of the whole inner state. Commands are written before they are answered, so that nothing accepted is ever lost.
 #pragma once
 
 #include <string>
@@ -25,7 +25,8 @@ class Recorder {
   /// one.
   void note_command(const Command& command, std::int64_t start_step, std::int64_t session,
                     std::int64_t utime);
-  void end_step(const Simulation& simulation, std::int64_t utime);
+  /// `inbox`: every answer has been taken out of it.
+  void end_step(const Simulation& simulation, const CommandInbox& inbox, std::int64_t utime);
   /// What was noted outlives the process from here on.
   void flush() { log_.flush(); }
 
@@ -33,10 +34,13 @@ class Recorder {
   template <typename Message>
   void write(std::int64_t utime, const std::string& channel, const Message& message);
   void write_picture(const Simulation& simulation, std::int64_t utime);
+  void write_snapshot(const Simulation& simulation, const CommandInbox& inbox, std::int64_t utime);
 
   EventLogWriter log_;
-  std::string world_name_, force_channel_, control_channel_, step_channel_, stats_channel_;
-  std::int64_t picture_steps_;  // between two pictures
+  std::string world_name_, force_channel_, control_channel_, step_channel_, stats_channel_, snapshot_channel_;
+  std::int64_t picture_steps_;       // between two pictures
+  std::int64_t snapshot_steps_;      // between two snapshots; 0: none
+  std::int64_t since_snapshot_ = 0;  // steps
   StepChecksum checksum_;
   StatePublisher publisher_;
   WorldView view_;

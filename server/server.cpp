@@ -192,7 +192,7 @@ void Server::step() {
   ++steps_done_;
   log_contained();
   record([&](Recorder& r) {
-    r.end_step(simulation_, clock_.wall_us());
+    r.end_step(simulation_, inbox_, clock_.wall_us());
     r.flush();
   });
   if (observer_) observer_(world().report());

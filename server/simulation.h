@@ -37,6 +37,8 @@ class Simulation {
   std::vector<PushView> view_pushes() const;
 
  private:
+  template <typename>
+  friend struct Archived;  // its list of members, snapshot.cpp
   Outcome apply_control(const control_t& command);
   Outcome watch(const control_t& command);
   Outcome unwatch(const control_t& command);

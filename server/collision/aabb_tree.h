@@ -38,6 +38,8 @@ class AabbTree {
   std::size_t size() const { return leaves_; }
 
  private:
+  template <typename>
+  friend struct Archived;  // its list of members, world/archive.cpp
   struct Node {
     Aabb bounds;
     Leaf parent = kNone;  // next free node when unused

@@ -54,6 +54,8 @@ class BroadPhase {
   std::uint64_t boxes_renewed() const { return boxes_renewed_; }
 
  private:
+  template <typename>
+  friend struct Archived;  // its list of members, world/archive.cpp
   struct Proxy {
     AabbTree::Leaf leaf = AabbTree::kNone;
     bool moves = false;

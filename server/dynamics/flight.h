@@ -43,6 +43,8 @@ class Flight {
   double phase_rate() const { return rotation_.phase_rate(); }
 
  private:
+  template <typename>
+  friend struct Archived;  // its list of members, world/archive.cpp
   Vec3 x_ = Vec3::Zero(), v_ = Vec3::Zero(), L_ = Vec3::Zero();
   FlightLoad load_;
   FreeRotation rotation_;

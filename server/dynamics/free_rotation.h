@@ -31,6 +31,8 @@ class FreeRotation {
   double phase_rate() const;
 
  private:
+  template <typename>
+  friend struct Archived;  // its list of members, world/archive.cpp
   void classify(const MassProperties& mass, const Motion& start);
   void set_steady(const Vec3& rate_W, const Vec3& spin_B);
   void set_tumbling(const MassProperties& mass, const Vec3& w_P, const std::array<int, 3>& axes, double L);
@@ -45,6 +47,8 @@ class FreeRotation {
     double speed() const { return 2.0 * half_speed_; }
 
    private:
+    template <typename>
+    friend struct Archived;
     Vec3 rate_ = Vec3::Zero(), axis_ = Vec3::Zero();
     double half_speed_ = 0.0;
   };

@@ -43,6 +43,8 @@ class Tumbling {
   double phase_rate() const;
 
  private:
+  template <typename>
+  friend struct Archived;  // its list of members, world/archive.cpp
   /// T: theta_1, 2, 3 of the phase z, along the components 2, 1, 3 of L. X: phase of theta_4(z + iy).
   struct Thetas {
     double T1, T2, T3, re, im, shift;

@@ -22,6 +22,8 @@ class ClientHistory {
   std::size_t size() const { return clients_.size(); }
 
  private:
+  template <typename>
+  friend struct Archived;  // its list of members, snapshot.cpp
   struct Client {
     std::uint64_t heard = 0;                   // by order of arrival
     std::map<std::int64_t, Outcome> outcomes;  // by sequence; none older than the window behind the highest

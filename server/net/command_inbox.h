@@ -71,6 +71,8 @@ class CommandInbox {
   std::size_t pending() const { return pending_.size(); }
 
  private:
+  template <typename>
+  friend struct Archived;                                            // its list of members, snapshot.cpp
   using Key = std::tuple<std::int64_t, std::int64_t, std::int64_t>;  // start step, client, sequence
 
   template <typename Message>

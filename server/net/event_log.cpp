@@ -104,6 +104,12 @@ std::optional<LogEvent> EventLogReader::next() {
   return event;
 }
 
+void EventLogReader::skip_to(std::int64_t offset, std::int64_t count) {
+  if (::fseeko(file_.get(), offset, SEEK_SET) != 0) fail_with("the log can't be read");
+  offset_ = offset;
+  count_ = count;
+}
+
 std::optional<LogEvent> EventLogReader::stop(std::string what) {
   damage_ = {.offset = offset_, .cut = false, .what = std::move(what)};
   damage_->cut = !sync_follows() && damage_->what.starts_with("it ends");

@@ -57,6 +57,8 @@ class EventLogReader {
   /// The next event; none at the end of the file, or at damage().
   std::optional<LogEvent> next();
   const std::optional<LogDamage>& damage() const { return damage_; }
+  /// Goes on at an event that starts at `offset`, the `count`-th of the file: as another reader found it.
+  void skip_to(std::int64_t offset, std::int64_t count);
   std::int64_t offset() const { return offset_; }  ///< End of the last event that was read.
   std::int64_t count() const { return count_; }    ///< Events read.
 

@@ -73,6 +73,8 @@ class ContactGraph {
   const std::vector<Contact>& all() const { return contacts_; }
 
  private:
+  template <typename>
+  friend struct Archived;  // its list of members, world/archive.cpp
   void merge_incoming();
   std::vector<Contact> contacts_, incoming_;
   std::size_t late_ = 0;  // at the end of contacts_, not in order

@@ -111,6 +111,8 @@ class World {
   const std::vector<BodyId>& contained() const { return contained_; }
 
  private:
+  template <typename>
+  friend struct Archived;  // its list of members, archive.cpp
   static constexpr std::uint32_t kWorld = 0xffffffffu;
 
   struct ActivePush {

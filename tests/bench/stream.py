@@ -24,12 +24,10 @@ sys.path.insert(0, str(ROOT / "tests/network"))
 
 import lcm  # noqa: E402
 import numpy as np  # noqa: E402
-from link import Link  # noqa: E402
+from link import CABLE_URL, GROUP, Link  # noqa: E402
 from server import Server  # noqa: E402
 from tumble import World  # noqa: E402
 
-GROUP, PORT = "239.255.76.67", 7667
-URL = f"udpm://{GROUP}:{PORT}?ttl=1"
 SECONDS = 3.0
 SCENE = """<sdf version="1.11"><world name="stream"><gravity>0 0 0</gravity><population name="body">
 <model name="body"><link name="link">
@@ -46,9 +44,9 @@ class Listener:
         self.socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         self.socket.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         self.socket.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEPORT, 1)
-        self.socket.bind((GROUP, PORT))
+        self.socket.bind(GROUP)
         self.socket.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP,
-                               struct.pack("=4sI", socket.inet_aton(GROUP), socket.INADDR_ANY))
+                               struct.pack("=4sI", socket.inet_aton(GROUP[0]), socket.INADDR_ANY))
         self.socket.settimeout(0.1)
 
     def listen(self, seconds):
@@ -80,7 +78,7 @@ class Listener:
 def logger_loss(folder):
     """Of the states: what lcm-logger writes against what was sent, by the numbers of the messages of each publication."""
     path = folder / "logger.lcm"
-    with subprocess.Popen(["lcm-logger", "--quiet", "--force", f"--lcm-url={URL}", path]) as logger:
+    with subprocess.Popen(["lcm-logger", "--quiet", "--force", f"--lcm-url={CABLE_URL}", path]) as logger:
         time.sleep(SECONDS)
         logger.send_signal(signal.SIGINT)
     frames = {}
@@ -96,7 +94,7 @@ def logger_loss(folder):
 def latency(count):
     """From a push to a state that shows it, in this client: median and 99th of a hundred."""
     samples = []
-    with World(url=URL, timeout=30.0) as world:
+    with World(url=CABLE_URL, timeout=30.0) as world:
         names = world.names
         for i in range(60 if count < 5000 else 10):
             body = world[names[i % len(names)]]
@@ -112,10 +110,10 @@ def measure(link, folder, count, encoding):
     rows = max(1, int(count ** 0.5))
     scene = folder / f"{count}.sdf"
     scene.write_text(SCENE.format(count=count, rows=rows, cols=-(-count // rows)), encoding="utf-8")
-    arguments = [scene, "--lcm-url", URL, "--encoding", encoding]
+    arguments = [scene, "--lcm-url", CABLE_URL, "--encoding", encoding]
     with Server(folder / "server.log", *arguments, wrapper=link.far) as server:
         server.wait_for_output("TUMBLE_STATE", 60.0)
-        with World(url=URL, timeout=60.0) as world:  # all of them move and turn
+        with World(url=CABLE_URL, timeout=60.0) as world:  # all of them move and turn
             for body in world:
                 body.push(force=(body.mass, 0, 0), torque=(0, 0, 0.01 * body.mass), wait=False)
             world.wait_for(lambda: not len(world._outbox), 60.0)  # pylint: disable=protected-access

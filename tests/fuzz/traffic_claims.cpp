@@ -21,8 +21,9 @@ constexpr std::int64_t kSession = 1;
 constexpr std::size_t kFingerprint = 8;
 enum Kind { datagram, force, control, other, tick, kinds };
 
-using OtherMessage = std::variant<heartbeat_t, state_t, stats_t, body_state_t, catalog_t, contacts_t, ack_t,
-                                  packed_t, pushes_t, query_t, hits_t, recording_t, step_record_t>;
+using OtherMessage =
+    std::variant<heartbeat_t, state_t, stats_t, body_state_t, catalog_t, contacts_t, ack_t, packed_t,
+                 pushes_t, query_t, hits_t, recording_t, step_record_t, snapshot_t>;
 
 World make_world() {
   World world;

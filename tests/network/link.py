@@ -3,6 +3,8 @@ by tbf; what neither can do (delay, duplicates, another order) is relay.py's."""
 import os
 import subprocess
 
+GROUP = ("239.255.76.67", 7667)  # LCM's default
+CABLE_URL = "udpm://{}:{}?ttl=1".format(*GROUP)
 NEAR, FAR = "near0", "far0"
 ADDRESSES = {NEAR: "10.77.0.1/24", FAR: "10.77.0.2/24"}
 

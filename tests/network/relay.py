@@ -14,7 +14,7 @@ import socket
 import struct
 import time
 
-GROUP, PORT = "239.255.76.67", 7667
+from link import GROUP
 
 
 def enter(pid):
@@ -33,11 +33,11 @@ class End:
         self.receiver.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         self.receiver.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEPORT, 1)
         self.receiver.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4 << 20)
-        self.receiver.bind((GROUP, PORT))
+        self.receiver.bind(GROUP)
         self.receiver.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP,
-                                 struct.pack("=4sI", socket.inet_aton(GROUP), socket.INADDR_ANY))
+                                 struct.pack("=4sI", socket.inet_aton(GROUP[0]), socket.INADDR_ANY))
         self.sender = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-        self.sender.connect((GROUP, PORT))
+        self.sender.connect(GROUP)
         self.own = self.sender.getsockname()
 
     def receive(self):

@@ -7,8 +7,8 @@ import struct
 import time
 
 import pytest
+from link import GROUP
 from server import SCENES
-from wire import GROUP
 
 RATE = 240  # steps a second
 ATTEMPTS = 4  # what else runs on this machine takes ticks and room in buffers too

@@ -5,7 +5,8 @@ import socket
 import struct
 
 import pytest
-from wire import GROUP, MALFORMED
+from link import GROUP
+from wire import MALFORMED
 
 
 def malformed(wire):

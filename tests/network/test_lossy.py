@@ -7,13 +7,12 @@ import time
 
 import lcm
 import pytest
-from link import Link
+from link import CABLE_URL, GROUP, Link
 from log import Log, Truth
 from server import SCENES
 from tumble import NoServer, World
 from tumble.messages import force_command_t, stats_t
 
-URL = "udpm://239.255.76.67:7667?ttl=1"
 SECONDS = 3.0
 
 
@@ -32,7 +31,7 @@ def repair(link):
 
 
 def start_far(link, start, *arguments):
-    server = start(*arguments, "--lcm-url", URL, wrapper=link.far)
+    server = start(*arguments, "--lcm-url", CABLE_URL, wrapper=link.far)
     server.wait_for_output("TUMBLE_STATE", 20.0)
     return server
 
@@ -45,7 +44,7 @@ def test_the_picture_is_never_wrong_and_soon_complete(lossless, start, tmp_path,
     start_far(lossless, start, SCENES / "pyramid.sdf", "--record", path, "--record-interval", "1e-6")
     lossless.set_loss(loss)
     shown = set()
-    with World(url=URL, timeout=10.0) as world:
+    with World(url=CABLE_URL, timeout=10.0) as world:
         box = next(body for body in world if body.name.startswith("row_0"))
         box.push(force=(500 * box.mass, 0, 0), seconds=0.05)
         deadline = time.monotonic() + SECONDS
@@ -73,7 +72,7 @@ def test_a_late_joiner_is_complete_in_time_under_loss(lossless, start, encoding)
     times = []
     for _ in range(5):
         began = time.monotonic()
-        with World(url=URL, timeout=10.0) as world:
+        with World(url=CABLE_URL, timeout=10.0) as world:
             times.append(time.monotonic() - began)
             assert len(world) >= 1000
     assert min(times) < 2.0, times
@@ -84,7 +83,7 @@ def test_commands_act_exactly_once_under_loss(lossless, start, tmp_path):
     path = tmp_path / "run.lcm"
     server = start_far(lossless, start, SCENES / "free.sdf", "--record", path)
     lossless.set_loss(0.3)
-    with World(url=URL, timeout=20.0) as world:
+    with World(url=CABLE_URL, timeout=20.0) as world:
         ball, number, force = world["ball"], 400, 0.5
         futures = [ball.push(force=(force, 0, 0), wait=False) for _ in range(number)]
         answers = [future.result(30.0) for future in futures]
@@ -103,7 +102,7 @@ def test_a_thin_link_still_carries_the_world(lossless, start):
     lossless.set_rate(3)
     try:
         start_far(lossless, start, "--demo", "pile", "--encoding", "packed", "--publish-rate", 10)
-        with World(url=URL, timeout=10.0) as world:
+        with World(url=CABLE_URL, timeout=10.0) as world:
             assert len(world) >= 1000
             step = world.step_count
             assert world.wait_for(lambda: world.step_count > step + 24, 10.0)
@@ -116,7 +115,7 @@ def flood(link, payload, seconds):
     script = f"""
 import socket, time
 s = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-s.connect(("239.255.76.67", 7667))
+s.connect({GROUP})
 data, end, n = bytes.fromhex("{payload.hex()}"), time.monotonic() + {seconds}, 0
 while time.monotonic() < end:
     for _ in range(100):
@@ -138,7 +137,7 @@ def test_a_flood_of_garbage_does_no_harm(lossless, start, what):
     def memory():
         with open(f"/proc/{server.process.pid}/statm", encoding="ascii") as file:
             return int(file.read().split()[1]) * 4096
-    with World(url=URL, timeout=10.0) as world:
+    with World(url=CABLE_URL, timeout=10.0) as world:
         before, step = memory(), world.step_count
         attack = flood(lossless, payload, 2.0)
         answers = 0
@@ -155,8 +154,8 @@ def test_a_flood_of_garbage_does_no_harm(lossless, start, what):
 def test_ten_thousand_commands_a_second(lossless, start):
     """Sent blindly for 2 s: all of those that arrive are applied, none twice, and no step is given up for them."""
     server = start_far(lossless, start, SCENES / "free.sdf")
-    bus = lcm.LCM(URL)
-    with World(url=URL, timeout=10.0) as world:
+    bus = lcm.LCM(CABLE_URL)
+    with World(url=CABLE_URL, timeout=10.0) as world:
         ball = world["ball"].description
         command = force_command_t()
         command.client, command.body, command.generation = 99, ball.id, ball.generation
@@ -181,14 +180,14 @@ def test_ten_thousand_commands_a_second(lossless, start):
 def test_an_unreachable_server_is_named(lossless, start):
     start_far(lossless, start, SCENES / "free.sdf")
     lossless.set_loss(1.0)
-    with pytest.raises(NoServer, match="doctor"), World(url=URL, timeout=1.0):
+    with pytest.raises(NoServer, match="doctor"), World(url=CABLE_URL, timeout=1.0):
         pass
 
 
 def test_the_far_side_hears_no_raw_socket_noise(lossless, start):
     """Unicast to the port does not reach the server: it is bound to the group."""
     start_far(lossless, start, SCENES / "free.sdf")
-    with World(url=URL, timeout=10.0) as world:
+    with World(url=CABLE_URL, timeout=10.0) as world:
         before = world.stats.messages_malformed if world.stats else 0
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:
             for _ in range(10):

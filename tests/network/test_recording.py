@@ -21,7 +21,8 @@ def record_run(tmp_path_factory):
     """A log of a run with pushes, spawns, a removal, pauses, steps, a snapshot, its restoration and a reset."""
     folder, wire = tmp_path_factory.mktemp("recorded"), Wire()
     path = folder / "run.lcm"
-    with Server(folder / "server.log", SCENES / "pyramid.sdf", "--accuracy", "fast", "--record", path) as server:
+    with Server(folder / "server.log", SCENES / "pyramid.sdf", "--accuracy", "fast", "--record", path,
+                "--snapshot-interval", 0.5) as server:
         wire.next("HEARTBEAT", 10.0)
         do_everything(wire)
         assert server.stop() == 0
@@ -63,10 +64,11 @@ def test_a_recorded_run_comes_out_the_same(recorded):
     log = Log(recorded)
     sessions = sorted({record.session for record in log.steps})
     assert [session - sessions[0] for session in sessions] == [0, 1, 2]
-    assert {"RECORDING", "STEP", "FORCE", "CONTROL", "STATE", "CATALOG", "STATS"} == set(log.channels)
+    assert {"RECORDING", "STEP", "FORCE", "CONTROL", "STATE", "CATALOG", "STATS", "SNAPSHOT"} == set(log.channels)
     done = replay(recorded)
     assert done.returncode == 0, done.stderr
     assert f"{len(log.steps)} steps" in done.stderr and "same" in done.stderr
+    assert f"and {len(log.steps) // 120} snapshots" in done.stderr
 
 
 def flip(path, offset):
@@ -78,7 +80,8 @@ def flip(path, offset):
 
 
 def test_a_damaged_log_is_read_up_to_the_damage(recorded, tmp_path):
-    """One bit of a command's force, one of an event's header."""
+    """One bit of a command's force, one of an event's header. Nothing can be read behind the second; behind the first there
+    are snapshots to go on from."""
     data = recorded.read_bytes()
     command = data.index(b"TUMBLE_FORCE") + len("TUMBLE_FORCE") + 100
     header = data.index(b"TUMBLE_STEP", len(data) // 2) - 28
@@ -92,8 +95,11 @@ def test_a_damaged_log_is_read_up_to_the_damage(recorded, tmp_path):
         assert offset - 1000 < where <= offset + 1000, (name, offset, done.stderr)
         assert int(re.search(r"(\d+) steps", done.stderr).group(1)) < len(Log(recorded).steps)
         resumed = run_server("--resume", path, "--steps", 1)
-        assert resumed.returncode == 1 and f"head -c {where}" in resumed.stderr
-        assert path.stat().st_size == len(data), "nothing was overwritten"
+        if name == "command":
+            assert resumed.returncode == 0 and "from the snapshot after step" in resumed.stderr, resumed.stderr
+        else:
+            assert resumed.returncode == 1 and f"head -c {where}" in resumed.stderr
+            assert path.stat().st_size == len(data), "nothing was overwritten"
 
 
 def test_a_cut_log_is_read_to_its_last_step(recorded, tmp_path):
@@ -106,8 +112,25 @@ def test_a_cut_log_is_read_to_its_last_step(recorded, tmp_path):
         steps = int(re.search(r"(\d+) steps", done.stderr).group(1))
         resumed = run_server("--resume", path, "--steps", 10, "--fast")
         assert resumed.returncode == 0, resumed.stderr
+        done_again = re.search(r"from the snapshot after step \d+ (\d+) steps", resumed.stderr)
+        assert int(done_again.group(1)) < 120, "no more than what the last snapshot lacks"
         again = replay(path)
         assert again.returncode == 0 and f"{steps + 10} steps" in again.stderr
+
+
+def test_a_damaged_snapshot_is_told_and_the_one_before_it_taken(recorded, tmp_path):
+    path = tmp_path / "snapshot.lcm"
+    shutil.copy(recorded, path)
+    steps = len(Log(recorded).steps)
+    flip(path, path.read_bytes().rindex(b"TUMBLE_SNAPSHOT") + 1000)
+    done = replay(path)
+    assert done.returncode == 1 and f"{steps} steps" in done.stderr, done.stderr
+    assert re.search(r"the snapshot at byte \d+ can't be used: .* is damaged", done.stderr)
+    resumed = run_server("--resume", path, "--steps", 10, "--fast")
+    assert resumed.returncode == 0, resumed.stderr
+    assert "is damaged" in resumed.stderr
+    assert 120 <= int(re.search(r"after step \d+ (\d+) steps", resumed.stderr).group(1)) < 240
+    assert f"{steps + 10} steps" in replay(path).stderr
 
 
 def test_another_step_is_named(recorded, tmp_path):
@@ -169,10 +192,10 @@ class Pusher:
 
 
 def test_fifty_deaths_lose_nothing(start, wire, tmp_path):
-    """Killed at 50 random moments while a client pushes: at the end every push acted once, and the bits are those of a
-    run that never died."""
+    """Killed at 50 random moments while a client pushes, and gone on with from the last snapshot: at the end every push
+    acted once, and the bits are those of a run that never died, those of each snapshot included."""
     generator, pusher, path = random.Random(3), Pusher(wire), tmp_path / "run.lcm"
-    server = start(SCENES / "free.sdf", "--record", path)
+    server = start(SCENES / "free.sdf", "--record", path, "--snapshot-interval", 0.05)
     wire.next("HEARTBEAT", 20.0)
     index, generation, mass = wire.bodies()["ball"]
     for _ in range(50):
@@ -193,6 +216,7 @@ def test_fifty_deaths_lose_nothing(start, wire, tmp_path):
     done = run_server("--replay", path)
     assert done.returncode == 0, done.stderr
     assert f"{len(log.steps)} steps with {pusher.sent} commands came out the same" in done.stderr
+    assert int(re.search(r"and (\d+) snapshots", done.stderr).group(1)) > 10
     last = next(m for m in reversed(wire.heard["STATE"]) if index in m.id[:m.n])
     speed = last.vx[list(last.id).index(index)]
     assert speed * mass == pytest.approx(pusher.sent * PUSH[0] * log.head.dt, rel=1e-9)

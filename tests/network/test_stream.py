@@ -5,6 +5,7 @@ import time
 
 import lcm
 import pytest
+from link import CABLE_URL
 from server import SCENES, run_tumble
 from wire import Wire
 
@@ -31,7 +32,7 @@ def test_a_late_joiner_is_complete_in_time(start):
 def test_messages_keep_to_the_payload_limit(start, wire, tmp_path):
     log = tmp_path / "limit.log"
     with subprocess.Popen(["lcm-logger", "--quiet", log]) as logger:
-        start("--demo", "pile", "--lcm-url", "udpm://239.255.76.67:7667?ttl=1")
+        start("--demo", "pile", "--lcm-url", CABLE_URL)
         limit = wire.next("HEARTBEAT", 10.0).payload_limit
         wire.listen(1.0)
         logger.send_signal(signal.SIGINT)

@@ -7,7 +7,6 @@ import time
 import lcm
 from tumble.messages import (ack_t, body_state_t, catalog_t, control_t, force_command_t, heartbeat_t, state_t, stats_t)
 
-GROUP = ("239.255.76.67", 7667)  # LCM's default
 TYPES = {"STATE": state_t, "STATS": stats_t, "CATALOG": catalog_t, "HEARTBEAT": heartbeat_t, "ACK": ack_t}
 
 Answer = collections.namedtuple("Answer", "client sequence status applied_step body generation detail session")

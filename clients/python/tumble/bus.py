@@ -29,7 +29,7 @@ def resolve_url(url: str) -> str:
 
 def open_bus(url: str) -> lcm.LCM:
     """Probes, then connects. Raises ValueError for a wrong URL, BusError if multicast does not work."""
-    parts = urlsplit(url)
+    parts, default = urlsplit(url), urlsplit(DEFAULT_URL)
     if parts.scheme == "udpm":
         probe(*_group_and_port(url))
         if "recv_buf_size" not in parts.query and (granted := _granted_buffer()):
@@ -74,7 +74,7 @@ def _wait_for(receiver: socket.socket, datagram: bytes, timeout: float) -> bool:
 def _group_and_port(url: str) -> Tuple[str, int]:
     parts = urlsplit(url)
     try:
-        group, port = parts.hostname or "239.255.76.67", parts.port or 7667
+        group, port = parts.hostname or default.hostname, parts.port or default.port
         if not 224 <= socket.inet_aton(group)[0] <= 239:
             raise ValueError(f"{group} is not an IPv4 multicast address")
         unknown = [key for key, _ in parse_qsl(parts.query) if key not in ("ttl", "recv_buf_size", "transmit_only")]

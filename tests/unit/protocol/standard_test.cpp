@@ -68,6 +68,7 @@ TEST(Standard, FingerprintsAreThoseOfTheTypes) {
   expect_fingerprint<pushes_t>("pushes_t");
   expect_fingerprint<query_t>("query_t");
   expect_fingerprint<recording_t>("recording_t");
+  expect_fingerprint<snapshot_t>("snapshot_t");
   expect_fingerprint<state_t>("state_t");
   expect_fingerprint<step_record_t>("step_record_t");
   expect_fingerprint<stats_t>("stats_t");

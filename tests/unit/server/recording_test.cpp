@@ -11,11 +11,13 @@
 #include "replay.h"
 #include "scene/demo.h"
 #include "scene/sdf.h"
+#include "version.h"
 
 namespace tumble {
 namespace {
 
 constexpr std::int64_t kSession = 65537;
+constexpr int kSnapshotSteps = 10;
 
 class Recording : public testing::Test {
  protected:
@@ -25,7 +27,9 @@ class Recording : public testing::Test {
     head.session = kSession;
     head.world = "T";
     head.dt = scene().options.time_step;
+    head.server_version = kVersion;
     head.interval = 0.1;
+    head.snapshot_interval = kSnapshotSteps * head.dt;
     head.scene = write_sdf(scene());
     head.state_hash = static_cast<std::int64_t>(simulation_.world().state_hash());
     recorder_.emplace(EventLogWriter(path_), head);
@@ -36,7 +40,7 @@ class Recording : public testing::Test {
   void step(int count) {
     for (int i = 0; i < count; ++i) {
       simulation_.step();
-      recorder_->end_step(simulation_, 1000 * ++utime_);
+      recorder_->end_step(simulation_, inbox_, 1000 * ++utime_);
     }
   }
   static Command make_push(std::int64_t sequence, std::uint32_t body) {
@@ -69,6 +73,20 @@ class Recording : public testing::Test {
     replay.run({}, stop);
     return replay;
   }
+  /// Goes on from the last snapshot.
+  Replay resume() {
+    recorder_->flush();
+    Replay replay(path_);
+    replay.skip_to_last_snapshot();
+    const volatile std::sig_atomic_t stop = 0;
+    replay.run({}, stop);
+    return replay;
+  }
+  std::string read_log() {
+    recorder_->flush();
+    std::ifstream file(path_, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+  }
   std::uint32_t moving_body() const {
     std::uint32_t slot = 0;
     while (simulation_.world().body(slot).type != BodyType::dynamic) ++slot;
@@ -77,6 +95,7 @@ class Recording : public testing::Test {
 
   std::string path_ = testing::TempDir() + "recording_" + std::to_string(::getpid()) + ".lcm";
   Simulation simulation_;
+  CommandInbox inbox_;
   std::optional<Recorder> recorder_;
   std::int64_t utime_ = 0;
 };
@@ -103,6 +122,8 @@ TEST_F(Recording, ComesOutTheSame) {
   EXPECT_FALSE(again.difference());
   EXPECT_FALSE(again.damage());
   EXPECT_EQ(again.steps(), 100);
+  EXPECT_EQ(again.snapshots(), 100 / kSnapshotSteps);
+  EXPECT_TRUE(again.bad_snapshots().empty());
   EXPECT_EQ(again.commands(), 9);
   EXPECT_EQ(again.simulation().world().state_hash(), simulation_.world().state_hash());
   EXPECT_EQ(again.simulation().session(), kSession + 2);
@@ -146,9 +167,7 @@ TEST_F(Recording, GoesOnAfterACutAtAnyByte) {
   step(3);
   apply(make_push(1, moving_body()));
   step(2);
-  recorder_->flush();
-  std::ifstream file(path_, std::ios::binary);
-  const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+  const std::string bytes = read_log();
   const volatile std::sig_atomic_t stop = 0;
   for (std::size_t length = bytes.size() - 600; length < bytes.size(); length += 7) {  // the last steps
     std::ofstream(path_, std::ios::binary) << bytes.substr(0, length);
@@ -159,13 +178,133 @@ TEST_F(Recording, GoesOnAfterACutAtAnyByte) {
     Recorder goes_on(EventLogWriter(path_, cut.log_size(), cut.log_events()), cut.head(), cut.checksum());
     while (cut.simulation().now_step() < 8) {
       cut.simulation().step();
-      goes_on.end_step(cut.simulation(), 0);
+      goes_on.end_step(cut.simulation(), cut.inbox(), 0);
     }
     goes_on.flush();
     Replay again(path_);
     again.run({}, stop);
     EXPECT_FALSE(again.difference() || again.damage()) << length;
     EXPECT_EQ(again.simulation().now_step(), 8);
+  }
+}
+
+TEST_F(Recording, GoesOnFromTheLastSnapshot) {
+  step(15);
+  apply(make_push(1, moving_body()));
+  apply(make_control(2, control_t::VERB_SNAPSHOT, "kept"));
+  apply(make_control(3, control_t::VERB_CONTACTS_ON));
+  step(8);
+  apply(make_push(4, moving_body()));
+  step(4);
+  Replay again = resume();
+  EXPECT_EQ(again.skipped_to(), 20);
+  EXPECT_EQ(again.steps(), 7);
+  EXPECT_EQ(again.commands(), 1);
+  EXPECT_TRUE(again.bad_snapshots().empty());
+  EXPECT_TRUE(again.simulation().contacts_wanted());
+  EXPECT_EQ(again.simulation().view_pushes().size(), simulation_.view_pushes().size());
+  const auto expect_equal = [&] {
+    EXPECT_EQ(take_snapshot(again.simulation(), {}).simulation, take_snapshot(simulation_, {}).simulation);
+  };
+  expect_equal();
+  for (const auto& command : {make_control(5, control_t::VERB_RESTORE, "kept"), make_push(6, moving_body()),
+                              make_control(7, control_t::VERB_RESET)}) {
+    EXPECT_EQ(again.simulation().apply(command).status, Status::applied);
+    EXPECT_EQ(simulation_.apply(command).status, Status::applied);
+    for (int i = 0; i < 200; ++i) {
+      again.simulation().step();
+      simulation_.step();
+    }
+    expect_equal();
+  }
+}
+
+TEST_F(Recording, KeepsAnswersAndWhatWaitedInSnapshots) {
+  step(3);
+  apply(make_push(1, moving_body()));
+  recorder_->note_command(make_push(2, moving_body()), 40, kSession, 0);
+  step(2);
+  Replay before = replay();
+  Recorder goes_on(EventLogWriter(path_, before.log_size(), before.log_events()), before.head(),
+                   before.checksum());
+  for (int i = 0; i < kSnapshotSteps; ++i) {
+    before.simulation().step();
+    goes_on.end_step(before.simulation(), before.inbox(), 0);
+  }
+  goes_on.flush();
+  Replay again = resume();
+  EXPECT_EQ(again.skipped_to(), 15);
+  EXPECT_EQ(again.inbox().pending(), 1u);
+  again.inbox().set_now(kSession, 15);
+  std::vector<std::uint8_t> bytes;
+  encode(std::get<force_command_t>(make_push(1, moving_body()).content), bytes);
+  again.inbox().receive_force(bytes);
+  const std::vector<Acknowledgement> answers = again.inbox().take_answers();
+  ASSERT_EQ(answers.size(), 1u);
+  EXPECT_EQ(answers[0].outcome.step, 3) << "as it was told before, and not applied again";
+  again.inbox().set_now(kSession, 40);
+  const std::vector<Command> due = again.inbox().take_due();
+  ASSERT_EQ(due.size(), 1u);
+  EXPECT_EQ(std::get<force_command_t>(due[0].content).force[0], 0.25);
+}
+
+TEST_F(Recording, TakesTheSnapshotBeforeADamagedOne) {
+  step(35);
+  std::string bytes = read_log();
+  bytes[bytes.rfind("T_SNAPSHOT") + 5000] ^= 4;
+  std::ofstream(path_, std::ios::binary) << bytes;
+  Replay again = resume();
+  EXPECT_EQ(again.skipped_to(), 20);
+  EXPECT_EQ(again.steps(), 15);
+  EXPECT_FALSE(again.difference() || again.damage());
+  EXPECT_EQ(again.simulation().world().state_hash(), simulation_.world().state_hash());
+  ASSERT_EQ(again.bad_snapshots().size(), 1u);
+  EXPECT_NE(again.bad_snapshots()[0].find("after step 30 is damaged"), std::string::npos);
+  EXPECT_EQ(replay().bad_snapshots().size(), 1u);
+  EXPECT_EQ(replay().snapshots(), 2);
+}
+
+TEST_F(Recording, TellsASnapshotThatIsNotWhatTheCommandsLedTo) {
+  step(5);
+  Simulation other = simulation_;  // the same world, but for what its next steps do
+  other.apply(make_push(1, moving_body()));
+  const Replay before = replay();
+  EventLogWriter log(path_, before.log_size(), before.log_events());
+  send_parts(take_snapshot(other, inbox_), 0, [&](const snapshot_t& part) {
+    std::vector<std::uint8_t> bytes;
+    encode(part, bytes);
+    log.write(0, "T_SNAPSHOT", bytes);
+  });
+  log.flush();
+  const Replay again = replay();
+  EXPECT_FALSE(again.difference() || again.damage());
+  EXPECT_EQ(again.snapshots(), 0);
+  ASSERT_EQ(again.bad_snapshots().size(), 1u);
+  EXPECT_NE(again.bad_snapshots()[0].find("commands led at step 5"), std::string::npos);
+}
+
+TEST_F(Recording, GoesOnAfterACutWithinASnapshot) {
+  step(2 * kSnapshotSteps);
+  const std::string bytes = read_log();
+  const std::size_t last = bytes.rfind("T_SNAPSHOT") - 28;
+  const volatile std::sig_atomic_t stop = 0;
+  for (std::size_t length = last; length < bytes.size(); length += 997) {
+    std::ofstream(path_, std::ios::binary) << bytes.substr(0, length);
+    Replay cut = resume();
+    EXPECT_EQ(cut.skipped_to(), kSnapshotSteps);
+    EXPECT_EQ(cut.steps(), kSnapshotSteps);
+    EXPECT_TRUE(cut.bad_snapshots().empty());
+    Recorder goes_on(EventLogWriter(path_, cut.log_size(), cut.log_events()), cut.head(), cut.checksum());
+    for (int i = 0; i < kSnapshotSteps; ++i) {
+      cut.simulation().step();
+      goes_on.end_step(cut.simulation(), cut.inbox(), 0);
+    }
+    goes_on.flush();
+    Replay again(path_);
+    again.run({}, stop);
+    EXPECT_FALSE(again.difference() || again.damage()) << length;
+    EXPECT_EQ(again.snapshots(), 2);
+    EXPECT_TRUE(again.bad_snapshots().empty());
   }
 }
 

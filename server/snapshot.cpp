@@ -11,6 +11,7 @@
 
 #include "math/archive.h"
 #include "math/hash.h"
+#include "protocol/layout.h"
 #include "world/archive.h"
 
 namespace tumble {
@@ -26,11 +27,12 @@ std::int64_t compute_checksum(const snapshot_t& part) {
         std::int64_t{part.num_parts}, std::int64_t{part.size}}) {
     hash.add(static_cast<std::uint64_t>(field));
   }
-  for (std::size_t at = 0; at < part.data.size(); at += 8) {
-    std::uint64_t word = 0;
-    for (std::size_t i = at; i < std::min(at + 8, part.data.size()); ++i) word = word << 8 | part.data[i];
-    hash.add(word);
-  }
+  const Bytes data(part.data);
+  std::size_t at = 0;
+  for (; at + 8 <= data.size(); at += 8) hash.add(read_u64(data, at));
+  std::uint64_t rest = 0;
+  for (const std::uint8_t byte : data.subspan(at)) rest = rest << 8 | byte;
+  if (at < data.size()) hash.add(rest);
   return static_cast<std::int64_t>(hash.value());
 }
 

@@ -118,14 +118,6 @@ def test_two_worlds_share_a_bus(start):
         assert done.returncode == 0, done.stderr
 
 
-def test_doctor(free_bodies):
-    good = run_tumble("doctor")
-    assert good.returncode == 0, good.stdout
-    assert "ok" in good.stdout and str(free_bodies.process.pid) in good.stdout
-    bad = run_tumble("doctor", wrapper=NO_ROUTE)
-    assert bad.returncode != 0 and "ip route" in bad.stdout + bad.stderr
-
-
 def test_started_from_anywhere(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     assert run_server("--demo", "cradle", "--fast", "--steps", 2).returncode == 0

@@ -130,6 +130,14 @@ bool is_served(const std::string& world, const Traffic& traffic) {
                      [&](const auto& entry) { return entry.second.last.world == world; });
 }
 
+/// By a server that understands this client's questions.
+bool is_understood(const std::string& world, const Traffic& traffic) {
+  return std::any_of(traffic.servers.begin(), traffic.servers.end(), [&](const auto& entry) {
+    const heartbeat_t& last = entry.second.last;
+    return last.world == world && last.protocol_version == kProtocolVersion;
+  });
+}
+
 void check_servers(const Globals& globals, const Traffic& traffic, std::vector<Finding>& findings) {
   std::map<std::string, std::vector<const Server*>> by_world;
   for (const auto& [key, server] : traffic.servers) {
@@ -212,7 +220,7 @@ int examine(const Globals& globals, bool network_only) {
                                         static_cast<double>(traffic.bytes) / kListenTime / 1e3),
                             ""});
         check_servers(globals, traffic, findings);
-        if (is_served(globals.world, traffic)) findings.push_back(check_answer(globals));
+        if (is_understood(globals.world, traffic)) findings.push_back(check_answer(globals));
       }
     }
   }

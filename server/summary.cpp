@@ -28,6 +28,8 @@ Json counters_json(const Counters& c) {
       {"pairs_gjk_budget_hit", n.gjk_budget_hit},
       {"pairs_exact", n.exact},
       {"pairs_closed_form", n.closed_form},
+      {"pairs_facet_kept", n.facet_kept},
+      {"pairs_clip_kept", n.clip_kept},
       {"bodies_stepped", c.bodies_stepped},
       {"bodies_skipped_resting", c.bodies_skipped_resting},
       {"bodies_skipped_flying", c.bodies_skipped_flying},

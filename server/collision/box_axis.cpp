@@ -1,10 +1,12 @@
-// See box_axis.h. Faces first; then, unless a corner of one box in the other shows that no direction separates more, the
-// crossings of edges.
+// See box_axis.h. Faces first, then the crossings of edges: all nine without their roots, and of those the few that may
+// separate more.
 #include "collision/box_axis.h"
 
+#include <array>
 #include <utility>
 
 #include "collision/segment.h"
+#include "math/four.h"
 #include "math/rotation.h"
 
 namespace tumble {
@@ -31,22 +33,6 @@ BoxAxis find_face_axis(const BoxPair& pair, double tie) {
   return {a_axes[i], std::copysign(1.0, pair.t[i]) * Vec3::Unit(i), BoxAxis::Kind::face_a, i, 0};
 }
 
-/// Whether a point is no further than this [m] from a box about the origin, or at least that deep in it.
-bool is_within(const Vec3& p, const Vec3& h, double distance) {
-  const Vec3 beyond = p.cwiseAbs() - h;
-  const bool beside_a_face = (beyond.x() > 0.0) + (beyond.y() > 0.0) + (beyond.z() > 0.0) <= 1;
-  return beside_a_face && beyond.maxCoeff() <= distance;
-}
-
-/// True: no direction at all separates by more than the axis. A corner of one box at some depth in the other is
-/// overlapped by as much along any direction; no direction parts it from the other by more than its distance.
-bool is_proven(const BoxPair& pair, const BoxAxis& axis) {
-  const Vec3 n_B = pair.R.transpose() * axis.normal_A;
-  return is_within(pair.t - pair.R * furthest_corner(pair.b, n_B), pair.a, axis.separation) ||
-         is_within(pair.R.transpose() * (furthest_corner(pair.a, axis.normal_A) - pair.t), pair.b,
-                   axis.separation);
-}
-
 /// Separation along n = e_i x r_j / length, with |n . e_i| and |n . r_j| (zero but for rounding) counted if `honest`.
 template <int i, int j>
 BoxAxis evaluate_edge_axis(const BoxPair& pair, double length, bool honest) {
@@ -67,15 +53,41 @@ bool may_exceed(double scaled, double length2, double floor) {
                       : floor <= 0.0 || square >= floor2 * (1.0 - 1e-12);
 }
 
+/// Of the crossings e_i x r_j, lane j of [i]: the separation along it times its length; whether it separates more than
+/// `at_least` but for rounding, or is too short to say.
+struct Crossings {
+  Crossings(const BoxPair& pair, double at_least) {
+    const auto row = [&](int i) { return four(pair.R(i, 0), pair.R(i, 1), pair.R(i, 2)); };
+    const std::array<Four, 3> R = {row(0), row(1), row(2)};
+    const std::array<Four, 3> R_abs = {absolute(R[0]), absolute(R[1]), absolute(R[2])};
+    const Four b = four(pair.b.x(), pair.b.y(), pair.b.z());
+    const Four b1 = rotated_three<1>(b), b2 = rotated_three<2>(b);
+    const double limit = at_least - kAxisTie * (pair.a.sum() + pair.b.sum());
+    const Four limit2 = four(limit * std::abs(limit));
+    const auto evaluate = [&]<std::size_t i>(std::integral_constant<std::size_t, i>) {
+      // e_i x r_j = (0, -R(i2, j), R(i1, j)) in the cyclic order of i; its products with r_j1, r_j2 are entries of R.
+      constexpr std::size_t i1 = (i + 1) % 3, i2 = (i + 2) % 3;
+      const Four centre = four(pair.t[i2]) * R[i1] - four(pair.t[i1]) * R[i2];
+      const Four extents = four(pair.a[i1]) * R_abs[i2] + four(pair.a[i2]) * R_abs[i1] +
+                           b1 * rotated_three<2>(R_abs[i]) + b2 * rotated_three<1>(R_abs[i]);
+      const Four length2 = R[i1] * R[i1] + R[i2] * R[i2];
+      scaled[i] = absolute(centre) - extents;
+      may_win[i] = (scaled[i] * absolute(scaled[i]) >= limit2 * length2) | (length2 < four(kNearlyParallel));
+    };
+    evaluate(std::integral_constant<std::size_t, 0>());
+    evaluate(std::integral_constant<std::size_t, 1>());
+    evaluate(std::integral_constant<std::size_t, 2>());
+  }
+
+  std::array<Four, 3> scaled;
+  std::array<FourFlags, 3> may_win;
+};
+
 /// Replaces `best` by the crossing of A's axis i with B's axis j if that separates more, and more than `at_least`.
 template <int i, int j>
-void try_edge_axis(const BoxPair& pair, double at_least, BoxAxis& best) {
-  constexpr int i1 = (i + 1) % 3, i2 = (i + 2) % 3, j1 = (j + 1) % 3, j2 = (j + 2) % 3;
-  // e_i x r_j = (0, -R(i2, j), R(i1, j)) in the cyclic order of i; its products with r_j1, r_j2 are entries of R.
-  const double centre = pair.t[i2] * pair.R(i1, j) - pair.t[i1] * pair.R(i2, j);
-  const double extents = pair.a[i1] * pair.R_abs(i2, j) + pair.a[i2] * pair.R_abs(i1, j) +
-                         pair.b[j1] * pair.R_abs(i, j2) + pair.b[j2] * pair.R_abs(i, j1);
-  const double scaled = std::abs(centre) - extents, floor = std::max(best.separation, at_least);
+void try_edge_axis(const BoxPair& pair, double scaled, double at_least, BoxAxis& best) {
+  constexpr int i1 = (i + 1) % 3, i2 = (i + 2) % 3;
+  const double floor = std::max(best.separation, at_least);
   // The cross product is no longer than 1: divided by that, an overlap only grows.
   if (scaled < 0.0 && scaled < floor) return;
   const double length2 = pair.R(i1, j) * pair.R(i1, j) + pair.R(i2, j) * pair.R(i2, j);
@@ -88,11 +100,14 @@ void try_edge_axis(const BoxPair& pair, double at_least, BoxAxis& best) {
 
 /// The best of the nine crossings, or the first beyond the margin.
 BoxAxis find_edge_axis(const BoxPair& pair, double margin, double at_least) {
+  const Crossings crossings(pair, at_least);
   BoxAxis best;
-  const auto try_all = [&]<int... k>(std::integer_sequence<int, k...>) {
-    (void)(... || (try_edge_axis<k / 3, k % 3>(pair, at_least, best), best.separation > margin));
+  const auto try_all = [&]<std::size_t... k>(std::index_sequence<k...>) {
+    (void)(... || (crossings.may_win[k / 3][k % 3] != 0 &&
+                   (try_edge_axis<k / 3, k % 3>(pair, crossings.scaled[k / 3][k % 3], at_least, best),
+                    best.separation > margin)));
   };
-  try_all(std::make_integer_sequence<int, 9>{});
+  try_all(std::make_index_sequence<9>{});
   return best;
 }
 
@@ -108,7 +123,7 @@ BoxPair::BoxPair(const Box& box_a, const Box& box_b, const Pose& X_AB)
 BoxAxis find_axis(const BoxPair& pair, double margin) {
   const double tie = kAxisTie * (pair.a.sum() + pair.b.sum());
   const BoxAxis face = find_face_axis(pair, tie);
-  if (face.separation > margin || is_proven(pair, face)) return face;
+  if (face.separation > margin) return face;
   const BoxAxis edges = find_edge_axis(pair, margin, face.separation + tie);
   return edges.separation > face.separation + tie ? edges : face;
 }

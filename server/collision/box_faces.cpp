@@ -2,18 +2,20 @@
 #include "collision/box_faces.h"
 
 #include <algorithm>
+#include <span>
 
+#include "collision/clipped_points.h"
 #include "collision/feature_name.h"
-#include "collision/manifold_builder.h"
+#include "collision/tape_recorder.h"
 
 namespace tumble {
 namespace {
 
 /// The edge along axis k that ends in this corner.
-constexpr std::uint32_t edge_of(std::uint32_t k, std::uint32_t corner) {
-  return 8 * k + (corner & ~(1u << k));
+constexpr std::uint16_t edge_of(std::uint32_t k, std::uint32_t corner) {
+  return static_cast<std::uint16_t>(8 * k + (corner & ~(1u << k)));
 }
-constexpr std::uint32_t kEdgeIds = 24;
+constexpr std::uint16_t kEdgeIds = 24;
 
 /// Names of corner i of A (0) or B (1), and of A's edge i with B's edge j.
 constexpr auto kCornerNames = [] {
@@ -34,7 +36,7 @@ constexpr auto kCrossingNames = [] {
 }();
 
 /// The plane of the reference face in its box's frame: x, y along the box's axes k + 1 and k + 2 (cyclic), z outward; as
-/// FacePlane, but its axes need no products.
+/// FacePlane, but its axes need no products. Sides 0 to 3 are +x, +y, -x, -y, seen from outside.
 struct BoxFacePlane {
   BoxFacePlane(const BoxFace& face, const Vec3& h, const Vec3& normal)
       : k(face.k),
@@ -43,141 +45,165 @@ struct BoxFacePlane {
         height(face.sign * h[k]),
         h1(h[k1]),
         h2(h[k2]),
-        n(normal),
-        per_n(1.0 / n[k]) {
-    const std::uint32_t bit1 = 1u << k1, bit2 = 1u << k2, base = face.sign > 0.0 ? 1u << k : 0u;
-    heads = {base | bit1 | bit2, base | bit2, base, base | bit1};
-    const auto along1 = static_cast<std::uint32_t>(k1), along2 = static_cast<std::uint32_t>(k2);
-    edges = {edge_of(along2, heads[0]), edge_of(along1, heads[1]), edge_of(along2, heads[2]),
-             edge_of(along1, heads[3])};
-  }
+        n1(normal[k1]),
+        n2(normal[k2]),
+        nk(normal[k]),
+        per_n(1.0 / nk) {}
 
   /// Of the difference of two points; of a point, less the face's height along k.
   Vec3 to_plane(const Vec3& d) const {
     const double z = d[k] * per_n;
-    return {d[k1] - z * n[k1], d[k2] - z * n[k2], z};
+    return {d[k1] - z * n1, d[k2] - z * n2, z};
   }
   /// The middle between such a point and its foot on the plane.
-  Vec3 middle(const Vec3& p) const {
-    Vec3 middle = (0.5 * p.z()) * n;
-    middle[k] += height;
-    middle[k1] += p.x();
-    middle[k2] += p.y();
+  template <typename Point>
+  Vec3 middle(const Point& p) const {
+    const double half = 0.5 * p[2];
+    Vec3 middle;
+    middle[k] = half * nk + height;
+    middle[k1] = half * n1 + p[0];
+    middle[k2] = half * n2 + p[1];
     return middle;
+  }
+  /// How far p lies outside of a side [m].
+  template <std::size_t side, typename Point>
+  double outside(const Point& p) const {
+    return (side < 2 ? p[side % 2] : -p[side % 2]) - (side % 2 == 0 ? h1 : h2);
   }
 
   int k, k1, k2;
   double height, h1, h2;
-  Vec3 n;  ///< Contact normal away from the box, unit, near the face's.
+  double n1, n2, nk;  ///< Contact normal away from the box, unit, near the face's.
   double per_n;
-  /// Sides 0 to 3 are +x, +y, -x, -y, seen from outside; side s ends in corner heads[s], where side s + 1 starts.
+};
+
+/// Side s of the reference face is one of its box's edges and ends in corner heads[s], where side s + 1 starts.
+struct SideNames {
+  SideNames(const BoxFacePlane& plane) {
+    const auto along1 = static_cast<std::uint32_t>(plane.k1), along2 = static_cast<std::uint32_t>(plane.k2);
+    const std::uint32_t bit1 = 1u << along1, bit2 = 1u << along2,
+                        base = plane.height > 0.0 ? 1u << plane.k : 0u;
+    heads = {base | bit1 | bit2, base | bit2, base, base | bit1};
+    edges = {edge_of(along2, heads[0]), edge_of(along1, heads[1]), edge_of(along2, heads[2]),
+             edge_of(along1, heads[3])};
+  }
   std::array<std::uint32_t, 4> heads, edges;
 };
 
-/// The incident face, and what is left of it over the reference face.
-class FaceClip {
- public:
+/// The incident face, seen from the reference face.
+struct SeenFace {
   /// R, t: pose of the incident box in the reference's frame, h its half extents.
-  FaceClip(const BoxFacePlane& plane, bool reference_is_a, const BoxFace& incident, const Mat3& R,
-           const Vec3& t, const Vec3& h);
-
-  /// Cuts away what is further than the tolerance [m] beside the reference face.
-  void cut(double tolerance);
-
-  /// As ClipPolygon::make_manifold.
-  template <typename MiddleA>
-  Manifold make_manifold(const MiddleA& middle_A, const Vec3& normal_A, bool overlap, double margin,
-                         double merge) const;
-
- private:
-  /// A cut adds no more than one corner to a convex face, half of all if rounding made it anything else: 4, 6, 9, 13, 19.
-  static constexpr std::size_t kCapacity = 19;
-  struct Corner {
-    Vec3 p;
-    std::uint32_t name;
-    std::uint32_t
-        edge;  ///< That starts here: of the incident box, or kEdgeIds + a side of the reference face.
-  };
-  using Loop = std::array<Corner, kCapacity>;
-
-  template <std::uint32_t side>
-  void cut_side(double half, double tolerance);
-  std::uint32_t name_meeting(std::uint32_t edge, std::uint32_t side) const;
-  const Loop& loop() const { return loops_[current_]; }
-  /// Of what is left.
-  const Corner& lowest_corner() const {
-    const auto end = loop().begin() + static_cast<std::ptrdiff_t>(count_);
-    return *std::min_element(loop().begin(), end,
-                             [](const Corner& c, const Corner& d) { return c.p.z() < d.p.z(); });
+  SeenFace(const BoxFacePlane& plane, const BoxFace& face, const Mat3& R, const Vec3& t, const Vec3& h) {
+    const int k = face.k, k1 = (k + 1) % 3, k2 = (k + 2) % 3;
+    Vec3 centre = t + (face.sign * h[k]) * R.col(k);
+    centre[plane.k] -= plane.height;
+    const Vec3 middle = plane.to_plane(centre);
+    const Vec3 e1 = plane.to_plane(face.sign * h[k1] * R.col(k1)), e2 = plane.to_plane(h[k2] * R.col(k2));
+    const Four m = four(middle.x(), middle.y(), middle.z()), f1 = four(e1.x(), e1.y(), e1.z()),
+               f2 = four(e2.x(), e2.y(), e2.z());
+    corners = {m - f1 - f2, m + f1 - f2, m + f1 + f2, m - f1 + f2};
+    const double reach1 = std::abs(e1.x()) + std::abs(e2.x()), reach2 = std::abs(e1.y()) + std::abs(e2.y());
+    furthest = {middle.x() + reach1, middle.y() + reach2, reach1 - middle.x(), reach2 - middle.y()};
+  }
+  /// Whether a corner may be further than the tolerance [m] beside a side.
+  template <std::size_t side>
+  bool is_cut(const BoxFacePlane& plane, double tolerance) const {
+    return furthest[side] > (side % 2 == 0 ? plane.h1 : plane.h2) + tolerance;
   }
 
-  const BoxFacePlane& plane_;
-  bool reference_is_a_;
-  Vec3 middle_,
-      reach_;  ///< Of the uncut face; x, y and z of its corners differ from the middle's by no more.
-  std::size_t count_ = 4, current_ = 0;
-  std::array<Loop, 2> loops_;
+  std::array<Four, 4> corners;     ///< Counter-clockwise from outside.
+  std::array<double, 4> furthest;  ///< No corner is further out towards a side than this.
 };
 
-FaceClip::FaceClip(const BoxFacePlane& plane, bool reference_is_a, const BoxFace& incident, const Mat3& R,
-                   const Vec3& t, const Vec3& h)
-    : plane_(plane), reference_is_a_(reference_is_a) {
-  const int k = incident.k, k1 = (k + 1) % 3, k2 = (k + 2) % 3;
-  Vec3 centre = t + (incident.sign * h[k]) * R.col(k);
-  centre[plane.k] -= plane.height;
-  middle_ = plane.to_plane(centre);
-  const Vec3 e1 = plane.to_plane(incident.sign * h[k1] * R.col(k1)), e2 = plane.to_plane(h[k2] * R.col(k2));
-  reach_ = e1.cwiseAbs() + e2.cwiseAbs();
-  const bool up = incident.sign > 0.0;
-  const std::uint32_t side = up ? 1u << k : 0u, bit1 = 1u << k1, bit2 = 1u << k2;
-  const std::uint32_t first = up ? side : side | bit1, second = first ^ bit1;
-  const auto along1 = static_cast<std::uint32_t>(k1), along2 = static_cast<std::uint32_t>(k2);
-  const auto& names = kCornerNames[reference_is_a];
-  // Counter-clockwise from outside.
-  Loop& corners = loops_[0];
-  corners[0] = {middle_ - e1 - e2, names[first], edge_of(along1, first)};
-  corners[1] = {middle_ + e1 - e2, names[second], edge_of(along2, second)};
-  corners[2] = {middle_ + e1 + e2, names[second | bit2], edge_of(along1, second)};
-  corners[3] = {middle_ - e1 + e2, names[first | bit2], edge_of(along2, first)};
-}
+/// A corner of what is left of the incident face over the reference face.
+struct ClippedCorner {
+  Vec3 p;
+  std::uint32_t name;
+  std::uint16_t edge;  ///< That starts here: of the incident box, or kEdgeIds + a side of the reference face.
+  std::uint16_t place;  ///< On the tape.
+};
 
-void FaceClip::cut(double tolerance) {
-  const double right = plane_.h1 + tolerance, top = plane_.h2 + tolerance;
-  if (middle_.x() + reach_.x() > right) cut_side<0>(plane_.h1, tolerance);
-  if (middle_.y() + reach_.y() > top) cut_side<1>(plane_.h2, tolerance);
-  if (reach_.x() - middle_.x() > right) cut_side<2>(plane_.h1, tolerance);
-  if (reach_.y() - middle_.y() > top) cut_side<3>(plane_.h2, tolerance);
-}
+/// A cut adds no more than one corner to a convex face, half of all if rounding made it anything else: 4, 6, 9, 13, 19.
+constexpr std::size_t kClippedCorners = 19;
+using ClippedLoop = std::array<ClippedCorner, kClippedCorners>;
+
+/// Cuts away what is further than the tolerance [m] beside the reference face.
+class FaceClip {
+ public:
+  FaceClip(const BoxFacePlane& plane, bool reference_is_a, const BoxFace& incident, const SeenFace& seen,
+           double tolerance)
+      : plane_(plane), names_(plane), reference_is_a_(reference_is_a), tolerance_(tolerance) {
+    const auto along1 = static_cast<std::uint16_t>((incident.k + 1) % 3),
+               along2 = static_cast<std::uint16_t>((incident.k + 2) % 3);
+    const bool up = incident.sign > 0.0;
+    const std::uint32_t side = up ? 1u << incident.k : 0u, bit1 = 1u << along1, bit2 = 1u << along2;
+    const std::uint32_t first = up ? side : side | bit1, second = first ^ bit1;
+    const auto& names = kCornerNames[reference_is_a];
+    const auto corner = [&](std::size_t i) {
+      return Vec3(seen.corners[i][0], seen.corners[i][1], seen.corners[i][2]);
+    };
+    loops_[0][0] = {corner(0), names[first], edge_of(along1, first), 0};
+    loops_[0][1] = {corner(1), names[second], edge_of(along2, second), 1};
+    loops_[0][2] = {corner(2), names[second | bit2], edge_of(along1, second), 2};
+    loops_[0][3] = {corner(3), names[first | bit2], edge_of(along2, first), 3};
+  }
+
+  template <typename Recorder>
+  std::span<const ClippedCorner> cut(const SeenFace& seen, Recorder recorder) {
+    cut_side<0>(seen, recorder);
+    cut_side<1>(seen, recorder);
+    cut_side<2>(seen, recorder);
+    cut_side<3>(seen, recorder);
+    for (std::size_t i = 0; i < count_; ++i) recorder.leave(i, loop()[i].place, loop()[i].name);
+    recorder.finish(count_);
+    return {loop().data(), count_};
+  }
+
+ private:
+  const ClippedLoop& loop() const { return loops_[current_]; }
+  template <std::uint32_t side, typename Recorder>
+  void cut_side(const SeenFace& seen, Recorder& recorder);
+  std::uint32_t name_meeting(std::uint32_t edge, std::uint32_t side) const;
+
+  const BoxFacePlane& plane_;
+  const SideNames names_;
+  const bool reference_is_a_;
+  const double tolerance_;
+  std::size_t count_ = 4, current_ = 0;
+  std::array<ClippedLoop, 2> loops_;
+};
 
 std::uint32_t FaceClip::name_meeting(std::uint32_t edge, std::uint32_t side) const {
   if (edge >= kEdgeIds) {
     // Two sides meet in the reference's corner, unless all between them was cut away.
     const bool after = edge - kEdgeIds == (side + 1) % 4;
-    return kCornerNames[!reference_is_a_][plane_.heads[after ? side : (side + 3) % 4]];
+    return kCornerNames[!reference_is_a_][names_.heads[after ? side : (side + 3) % 4]];
   }
-  const std::uint32_t of_side = plane_.edges[side];
+  const std::uint32_t of_side = names_.edges[side];
   return reference_is_a_ ? kCrossingNames[of_side][edge] : kCrossingNames[edge][of_side];
 }
 
-template <std::uint32_t side>
-void FaceClip::cut_side(double half, double tolerance) {
-  const Loop& from = loops_[current_];
-  Loop& to = loops_[1 - current_];
-  const auto height = [half](const Corner& corner) {
-    return (side < 2 ? corner.p[side % 2] : -corner.p[side % 2]) - half;
-  };
+template <std::uint32_t side, typename Recorder>
+void FaceClip::cut_side(const SeenFace& seen, Recorder& recorder) {
+  if (!seen.is_cut<side>(plane_, tolerance_)) return recorder.skip_side(side);
+  recorder.start_side(side);
+  const ClippedLoop& from = loops_[current_];
+  ClippedLoop& to = loops_[1 - current_];
   std::size_t n = 0;
-  double outside = height(from[0]);
+  double outside = plane_.outside<side>(from[0].p);
   for (std::size_t i = 0; i < count_; ++i) {
-    const Corner &corner = from[i], &next = from[i + 1 == count_ ? 0 : i + 1];
-    const double next_outside = height(next);
-    const bool inside = outside <= tolerance;
+    const ClippedCorner &corner = from[i], &next = from[i + 1 == count_ ? 0 : i + 1];
+    const double next_outside = plane_.outside<side>(next.p);
+    const bool inside = outside <= tolerance_;
+    recorder.look(corner.place, inside);
     if (inside) to[n++] = corner;
-    if (inside != (next_outside <= tolerance)) {
-      const double rise = next_outside - outside;
-      if (outside * next_outside < 0.0 && std::abs(rise) > ContactTolerance::kNoCrossing) {
-        to[n++] = {corner.p + (outside / -rise) * (next.p - corner.p), name_meeting(corner.edge, side),
-                   corner.edge};
+    if (inside != (next_outside <= tolerance_)) {
+      Vec3 p;
+      if (cross_side(corner.p, next.p, outside, next_outside, p)) {
+        const auto place = static_cast<std::uint16_t>(recorder.cross(corner.place, next.place));
+        to[n++] = {p, name_meeting(corner.edge, side), corner.edge, place};
+      } else {
+        recorder.touch();
       }
       // The loop leaves: what was kept last is where it turns onto the side.
       if (inside) to[n - 1].edge = kEdgeIds + side;
@@ -188,20 +214,38 @@ void FaceClip::cut_side(double half, double tolerance) {
   count_ = n;
 }
 
+/// What is left after clipping afresh; as TapeReplay's.
+struct LeftOver {
+  std::span<const ClippedCorner> corners;
+  std::size_t count() const { return corners.size(); }
+  const Vec3& place(std::size_t i) const { return corners[i].p; }
+  std::uint32_t name(std::size_t i) const { return corners[i].name; }
+};
+
+/// By the tape if it is of these faces and still holds, else afresh.
 template <typename MiddleA>
-Manifold FaceClip::make_manifold(const MiddleA& middle_A, const Vec3& normal_A, bool overlap, double margin,
-                                 double merge) const {
-  Manifold manifold;
-  manifold.normal_A = normal_A;
-  const auto add = [&](const Corner& corner) {
-    if (!(corner.p.z() <= margin) || manifold.count == kMaxManifoldPoints) return;
-    manifold.count = add_or_merge(manifold.points.data(), manifold.count, merge,
-                                  {middle_A(corner.p), corner.p.z(), corner.name});
-  };
-  for (std::size_t i = 0; i < count_; ++i) add(loop()[i]);
-  if (manifold.count > 0 || !overlap || count_ == 0) return manifold;
-  const Corner& lowest = lowest_corner();
-  return single_point(normal_A, middle_A(lowest.p), std::min(lowest.p.z(), margin), margin, lowest.name);
+Manifold clip_or_replay(const BoxFacePlane& plane, bool reference_is_a, const BoxFace& incident,
+                        const SeenFace& seen, std::uint32_t faces, const MiddleA& middle_A,
+                        const Lying& lying, KeptClip& kept) {
+  const double tolerance = lying.tolerance.inside;
+  if (kept.tape.faces == faces) {
+    TapeReplay replay(kept.tape, seen.corners);
+    const auto run_side = [&]<std::size_t side>(std::integral_constant<std::size_t, side>) {
+      return replay.run_side(
+          side, seen.is_cut<side>(plane, tolerance), [&](const Four& p) { return plane.outside<side>(p); },
+          tolerance);
+    };
+    kept.held = run_side(std::integral_constant<std::size_t, 0>()) &&
+                run_side(std::integral_constant<std::size_t, 1>()) &&
+                run_side(std::integral_constant<std::size_t, 2>()) &&
+                run_side(std::integral_constant<std::size_t, 3>());
+    if (kept.held) return collect_points(replay, middle_A, lying);
+  }
+  kept.tape.faces = 0;
+  FaceClip fresh(plane, reference_is_a, incident, seen, tolerance);
+  return collect_points(LeftOver{kept.wanted ? fresh.cut(seen, TapeRecorder(kept.tape, faces, 4))
+                                             : fresh.cut(seen, NoRecorder())},
+                        middle_A, lying);
 }
 
 }  // namespace
@@ -217,23 +261,22 @@ bool lie_face_to_face(const BoxFace& face_a, const BoxFace& face_b) {
 }
 
 Manifold clip_faces(const BoxPair& pair, const BoxAxis& axis, const BoxFace& face_a, const BoxFace& face_b,
-                    bool reference_is_a, double margin) {
+                    bool reference_is_a, double margin, KeptClip& kept) {
   const double width = std::min(face_a.width(pair.a), face_b.width(pair.b));
-  const ContactTolerance tolerance = ContactTolerance::of(width, lie_face_to_face(face_a, face_b));
-  const bool overlap = axis.separation <= 0.0;
+  const Lying lying{axis.normal_A, axis.separation <= 0.0, margin,
+                    ContactTolerance::of(width, lie_face_to_face(face_a, face_b))};
+  const std::uint32_t faces = 1u + 6u * face_a.index() + face_b.index() + (reference_is_a ? 36u : 0u);
   if (reference_is_a) {
     const BoxFacePlane plane(face_a, pair.a, axis.normal_A);
-    FaceClip clip(plane, true, face_b, pair.R, pair.t, pair.b);
-    clip.cut(tolerance.inside);
-    const auto middle_A = [&](const Vec3& p) { return plane.middle(p); };
-    return clip.make_manifold(middle_A, axis.normal_A, overlap, margin, tolerance.merge);
+    const SeenFace seen(plane, face_b, pair.R, pair.t, pair.b);
+    const auto middle_A = [&](const auto& p) { return plane.middle(p); };
+    return clip_or_replay(plane, true, face_b, seen, faces, middle_A, lying, kept);
   }
   const Mat3 R_BA = pair.R.transpose();
   const BoxFacePlane plane(face_b, pair.b, -(R_BA * axis.normal_A));
-  FaceClip clip(plane, false, face_a, R_BA, -(R_BA * pair.t), pair.a);
-  clip.cut(tolerance.inside);
-  const auto middle_A = [&](const Vec3& p) -> Vec3 { return pair.R * plane.middle(p) + pair.t; };
-  return clip.make_manifold(middle_A, axis.normal_A, overlap, margin, tolerance.merge);
+  const SeenFace seen(plane, face_a, R_BA, -(R_BA * pair.t), pair.a);
+  const auto middle_A = [&](const auto& p) -> Vec3 { return pair.R * plane.middle(p) + pair.t; };
+  return clip_or_replay(plane, false, face_a, seen, faces, middle_A, lying, kept);
 }
 
 }  // namespace tumble

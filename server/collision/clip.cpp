@@ -3,13 +3,14 @@
 
 #include <cmath>
 
+#include "collision/clipped_points.h"
 #include "collision/feature_name.h"
 
 namespace tumble {
 void ClipPolygon::add_vertex(const Vec3& p, std::uint32_t vertex, std::uint32_t mark) {
   const std::uint32_t name = name_vertex(!reference_is_a_, vertex);
   Vertex& added = loops_[0][static_cast<std::size_t>(count_)];
-  added = {p, name, vertex, vertex, false, mark, mark};
+  added = {p, name, vertex, vertex, false, mark, mark, static_cast<std::uint32_t>(count_)};
   if (count_ > 0) {
     Vertex& before = loops_[0][static_cast<std::size_t>(count_ - 1)];
     before.head = vertex;
@@ -40,33 +41,39 @@ void ClipPolygon::continue_along(const ClipSide& side, Vertex& vertex) {
   vertex.mark = side.mark;
 }
 
-void ClipPolygon::cut(const ClipSide& side, double tolerance) {
+void ClipPolygon::cut(const ClipSide& side, double tolerance, TapeRecorder* recorder, std::size_t index) {
   const std::size_t total = static_cast<std::size_t>(count_);
   const Loop& vertices = loops_[static_cast<std::size_t>(current_)];
-  const auto outside = [&](std::size_t i) {
-    const Vec3& p = vertices[i].p;
-    return side.nx * p.x() + side.ny * p.y() - side.offset;
-  };
+  if (recorder != nullptr) {
+    recorder->start_side(index);
+    for (std::size_t i = 0; i < total; ++i)
+      recorder->look(vertices[i].place, side.outside(vertices[i].p) <= tolerance);
+  }
   std::size_t inner = 0;
-  while (inner < total && outside(inner) <= tolerance) ++inner;
+  while (inner < total && side.outside(vertices[inner].p) <= tolerance) ++inner;
   if (inner == total) return;
 
   Loop& kept = loops_[static_cast<std::size_t>(1 - current_)];
   std::size_t n = 0;
-  double distance = outside(0);
+  double distance = side.outside(vertices[0].p);
   for (std::size_t i = 0; i < total; ++i) {
     const std::size_t next = i + 1 == total ? 0 : i + 1;
     const Vertex& vertex = vertices[i];
-    const double next_distance = outside(next);
+    const double next_distance = side.outside(vertices[next].p);
     const bool inside = distance <= tolerance, next_inside = next_distance <= tolerance;
     if (inside) kept[n++] = vertex;
     if (inside != next_inside) {
-      const double rise = next_distance - distance;
-      const bool crosses = distance * next_distance < 0.0 && std::abs(rise) > ContactTolerance::kNoCrossing;
-      if (crosses && n < kept.size()) {
-        const Vec3 p = vertex.p + (distance / -rise) * (vertices[next].p - vertex.p);
-        kept[n++] = {p,           name_meeting(vertex, side), vertex.tail, vertex.head, vertex.on_side,
-                     vertex.mark, vertex.mark | side.mark};
+      Vec3 p;
+      if (n < kept.size() && cross_side(vertex.p, vertices[next].p, distance, next_distance, p)) {
+        kept[n] = vertex;
+        kept[n].p = p;
+        kept[n].name = name_meeting(vertex, side);
+        kept[n].marks = vertex.mark | side.mark;
+        if (recorder != nullptr)
+          kept[n].place = static_cast<std::uint32_t>(recorder->cross(vertex.place, vertices[next].place));
+        ++n;
+      } else if (recorder != nullptr) {
+        recorder->touch();
       }
       // The loop leaves: what was kept last is where it turns onto the side.
       if (inside) continue_along(side, kept[n - 1]);
@@ -75,6 +82,13 @@ void ClipPolygon::cut(const ClipSide& side, double tolerance) {
   }
   current_ = 1 - current_;
   count_ = static_cast<int>(n);
+}
+
+void ClipPolygon::write(TapeRecorder& recorder) const {
+  const Loop& vertices = loops_[static_cast<std::size_t>(current_)];
+  for (std::size_t i = 0; i < static_cast<std::size_t>(count_); ++i)
+    recorder.leave(i, vertices[i].place, vertices[i].name);
+  recorder.finish(static_cast<std::size_t>(count_));
 }
 
 }  // namespace tumble

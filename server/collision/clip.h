@@ -6,6 +6,7 @@
 #include <array>
 
 #include "collision/manifold_builder.h"
+#include "collision/tape_recorder.h"
 
 namespace tumble {
 
@@ -26,11 +27,20 @@ struct FacePlane {
     return {u_A.dot(foot), v_A.dot(foot), z};
   }
   /// The middle between such a point and its foot on the plane, in A.
-  Vec3 middle_A(const Vec3& p) const { return origin_A + p.x() * u_A + p.y() * v_A + (0.5 * p.z()) * n_A; }
+  template <typename Point>
+  Vec3 middle_A(const Point& p) const {
+    return origin_A + p[0] * u_A + p[1] * v_A + (0.5 * p[2]) * n_A;
+  }
 };
 
 /// One side of the reference face, from vertex `tail` to `head`: inside is nx x + ny y <= offset, (nx, ny) unit.
 struct ClipSide {
+  /// How far p lies outside [m].
+  template <typename Point>
+  double outside(const Point& p) const {
+    return nx * p[0] + ny * p[1] - offset;
+  }
+
   double nx, ny, offset;
   std::uint32_t tail, head;
   std::uint32_t mark = 0;  ///< A bit by which corners on this side can be told.
@@ -45,8 +55,10 @@ class ClipPolygon {
   /// After the last vertex.
   void close();
 
-  /// Cuts away what is further outside than `tolerance` [m].
-  void cut(const ClipSide& side, double tolerance);
+  /// Cuts away what is further outside than `tolerance` [m]. With a recorder, writes down how; it knows the side by `index`.
+  void cut(const ClipSide& side, double tolerance, TapeRecorder* recorder = nullptr, std::size_t index = 0);
+  /// After the last cut: the corners that are left.
+  void write(TapeRecorder& recorder) const;
 
   /// What is left, corner by corner. `marks`: of the edges and sides that meet in it.
   struct Corner {
@@ -83,6 +95,7 @@ class ClipPolygon {
     std::uint32_t tail, head;   ///< Of the edge that starts here, as numbered in its body.
     bool on_side;               ///< That edge is a side of the reference face.
     std::uint32_t mark, marks;  ///< Of that edge; of all that meets in the vertex.
+    std::uint32_t place;        ///< On the tape.
   };
   using Loop = std::array<Vertex, kCapacity>;
   /// Of what is left.

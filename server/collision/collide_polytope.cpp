@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "collision/clip.h"
+#include "collision/clipped_points.h"
 #include "collision/corner_contact.h"
 #include "collision/facet_search.h"
 #include "collision/feature_name.h"
@@ -15,70 +16,122 @@ namespace tumble {
 namespace {
 
 /// A face and the pose of its body in A.
-struct PlacedFace {
-  const Polytope& body;
-  const ConvexHull::Face& face;
-  const Mat3& R;
-  const Vec3& p;
+class PlacedFace {
+ public:
+  /// Without a pose: A's own.
+  PlacedFace(const Polytope& body, std::uint32_t face, const PolytopePair* of_b = nullptr)
+      : body_(body), face_(body.faces[face]), loop_(body.loop(face_)), pair_(of_b) {}
 
-  int count() const { return std::min(static_cast<int>(face.count), kMaxFaceVertices); }
+  double width() const { return face_.width; }
+  std::size_t count() const { return std::min<std::size_t>(face_.count, kMaxFaceVertices); }
+  bool is_thinned() const { return count() < face_.count; }
   /// Vertex k of the loop, which is thinned to `count()` evenly spread ones from vertex `first` on.
-  Vec3 vertex_A(int k, std::size_t first) const { return R * body.vertices[index(k, first)] + p; }
-  std::uint32_t index(int k, std::size_t first) const {
-    const auto loop = body.loop(face);
-    const std::size_t step = static_cast<std::size_t>(k) * loop.size() / static_cast<std::size_t>(count());
-    return loop[(first + step) % loop.size()];
+  std::uint32_t index(std::size_t k, std::size_t first = 0) const {
+    return is_thinned() ? loop_[(first + k * loop_.size() / count()) % loop_.size()] : loop_[k];
   }
+  Vec3 vertex_A(std::size_t k, std::size_t first = 0) const {
+    const Vec3& v = body_.vertices[index(k, first)];
+    return pair_ == nullptr ? v : pair_->R_AB * v + pair_->p_AB;
+  }
+  Vec3 normal_A() const { return pair_ == nullptr ? face_.normal : pair_->R_AB * face_.normal; }
+
+  /// Place in the loop of the vertex that is lowest along n.
+  std::size_t lowest_along(const Vec3& n_A) const {
+    const Vec3 n = pair_ == nullptr ? n_A : pair_->R_AB.transpose() * n_A;
+    std::size_t lowest = 0;
+    for (std::size_t i = 1; i < loop_.size(); ++i) {
+      if (n.dot(body_.vertices[loop_[i]]) < n.dot(body_.vertices[loop_[lowest]])) lowest = i;
+    }
+    return lowest;
+  }
+
+ private:
+  const Polytope& body_;
+  const ConvexHull::Face& face_;
+  const std::span<const std::uint32_t> loop_;
+  const PolytopePair* pair_;
 };
 
-std::size_t lowest_along(const PlacedFace& placed, const Vec3& n_A) {
-  const auto loop = placed.body.loop(placed.face);
-  const Vec3 n = placed.R.transpose() * n_A;
-  std::size_t lowest = 0;
-  for (std::size_t i = 1; i < loop.size(); ++i) {
-    if (n.dot(placed.body.vertices[loop[i]]) < n.dot(placed.body.vertices[loop[lowest]])) lowest = i;
-  }
-  return lowest;
+/// The plane of a face, with the contact's normal away from its body.
+FacePlane plane_of(const PlacedFace& reference, const Vec3& n_A) {
+  FacePlane plane;
+  plane.f_A = reference.normal_A();
+  plane.n_A = n_A;
+  plane.origin_A = reference.vertex_A(0);
+  plane.u_A = direction_or(reference.vertex_A(1) - plane.origin_A, perpendicular_to(plane.f_A));
+  plane.v_A = plane.f_A.cross(plane.u_A);
+  return plane;
 }
 
-Manifold clip_faces(const PlacedFace& reference, const PlacedFace& incident, bool reference_is_a,
-                    const Facet& facet, double margin, bool face_to_face) {
-  const Vec3& normal_A = facet.normal_A;
-  FacePlane plane;
-  plane.f_A = reference.R * reference.face.normal;
-  plane.n_A = reference_is_a ? normal_A : Vec3(-normal_A);
-  plane.origin_A = reference.vertex_A(0, 0);
-  plane.u_A = direction_or(reference.vertex_A(1, 0) - plane.origin_A, perpendicular_to(plane.f_A));
-  plane.v_A = plane.f_A.cross(plane.u_A);
-
-  ClipPolygon polygon(reference_is_a);
-  const bool thinned = incident.count() < static_cast<int>(incident.face.count);
-  const std::size_t first = thinned ? lowest_along(incident, plane.n_A) : 0;
-  for (int k = 0; k < incident.count(); ++k) {
-    polygon.add_vertex(plane.to_plane(incident.vertex_A(k, first)), incident.index(k, first));
-  }
-  polygon.close();
-
-  const double width = std::min(reference.face.width, incident.face.width);
-  const ContactTolerance tolerance = ContactTolerance::of(width, face_to_face);
-  const auto corner = [&](int k) -> Vec3 {
-    const Vec3 d = reference.vertex_A(k, 0) - plane.origin_A;
+/// Calls visit(k, side) with each side of a face of some length, until one returns false.
+template <typename Visit>
+bool visit_sides(const PlacedFace& face, const FacePlane& plane, const Visit& visit) {
+  const auto corner = [&](std::size_t k) -> Vec3 {
+    const Vec3 d = face.vertex_A(k) - plane.origin_A;
     return {plane.u_A.dot(d), plane.v_A.dot(d), 0.0};
   };
   Vec3 tail = Vec3::Zero();
-  for (int k = 0; k < reference.count(); ++k) {
-    const int next = (k + 1) % reference.count();
+  for (std::size_t k = 0; k < face.count(); ++k) {
+    const std::size_t next = k + 1 == face.count() ? 0 : k + 1;
     const Vec3 head = corner(next);
     const double x = head.y() - tail.y(), y = tail.x() - head.x(), length = std::sqrt(x * x + y * y);
     if (length > 0.0) {
       const double nx = x / length, ny = y / length;
-      polygon.cut({nx, ny, nx * tail.x() + ny * tail.y(), reference.index(k, 0), reference.index(next, 0)},
-                  tolerance.inside);
+      const ClipSide side{nx, ny, nx * tail.x() + ny * tail.y(), face.index(k), face.index(next)};
+      if (!visit(k, side)) return false;
     }
     tail = head;
   }
-  const auto middle_A = [&](const Vec3& p) { return plane.middle_A(p); };
-  return polygon.make_manifold(middle_A, normal_A, facet.separation <= 0.0, margin, tolerance.merge);
+  return true;
+}
+
+/// A number of the two faces and of which one is cut, 0 if there is none for them.
+std::uint32_t number_of(std::uint32_t face_a, std::uint32_t face_b, bool reference_is_a) {
+  constexpr std::uint32_t kFaces = 1u << 15;
+  if (face_a >= kFaces || face_b >= kFaces) return 0;
+  return 1u + (face_a * kFaces + face_b) * 2u + reference_is_a;
+}
+
+/// By the tape if it is of these faces and still holds, else afresh.
+Manifold clip_faces(const PlacedFace& reference, const PlacedFace& incident, bool reference_is_a,
+                    const Facet& facet, std::uint32_t faces, double margin, bool face_to_face,
+                    KeptClip& kept) {
+  const FacePlane plane = plane_of(reference, reference_is_a ? facet.normal_A : Vec3(-facet.normal_A));
+  const Lying lying{facet.normal_A, facet.separation <= 0.0, margin,
+                    ContactTolerance::of(std::min(reference.width(), incident.width()), face_to_face)};
+  const double tolerance = lying.tolerance.inside;
+  const auto middle_A = [&](const auto& p) { return plane.middle_A(p); };
+  if (faces != 0 && kept.tape.faces == faces) {
+    std::array<Four, ClipTape::kLoop> corners;
+    for (std::size_t k = 0; k < incident.count(); ++k) {
+      const Vec3 p = plane.to_plane(incident.vertex_A(k));
+      corners[k] = four(p.x(), p.y(), p.z());
+    }
+    TapeReplay replay(kept.tape, {corners.data(), incident.count()});
+    kept.held = visit_sides(reference, plane, [&](std::size_t k, const ClipSide& side) {
+      return replay.run_side(
+          k, true, [&](const Four& p) { return side.outside(p); }, tolerance);
+    });
+    if (kept.held) return collect_points(replay, middle_A, lying);
+  }
+
+  ClipPolygon polygon(reference_is_a);
+  const std::size_t first = incident.is_thinned() ? incident.lowest_along(plane.n_A) : 0;
+  for (std::size_t k = 0; k < incident.count(); ++k) {
+    polygon.add_vertex(plane.to_plane(incident.vertex_A(k, first)), incident.index(k, first));
+  }
+  polygon.close();
+  kept.tape.faces = 0;
+  TapeRecorder recorder(kept.tape, kept.wanted ? faces : 0, incident.count());
+  TapeRecorder* const writing = kept.wanted ? &recorder : nullptr;
+  std::size_t cuts = 0;
+  visit_sides(reference, plane, [&](std::size_t k, const ClipSide& side) {
+    polygon.cut(side, tolerance, writing, k);
+    return ++cuts > 0;
+  });
+  if (cuts < reference.count()) recorder.touch();
+  if (kept.wanted) polygon.write(recorder);
+  return polygon.make_manifold(middle_A, lying.normal_A, lying.overlap, margin, lying.tolerance.merge);
 }
 
 /// The edges of A and B that cross, in A's frame.
@@ -129,15 +182,13 @@ bool reference_is_a(const Facet& facet, const FacePair& faces) {
   return facet.kind == Facet::Kind::face_a || faces.cosine_a > ContactTolerance::kFlat;
 }
 
-Manifold make_manifold(const PolytopePair& pair, const Facet& facet, const FacePair& faces, double margin) {
+Manifold make_manifold(const PolytopePair& pair, const Facet& facet, const FacePair& faces, double margin,
+                       KeptClip& kept) {
   if (facet.kind == Facet::Kind::edges && !faces.are_flat()) return cross_edges(pair, facet, margin);
-  const Mat3 identity = Mat3::Identity();
-  const Vec3 zero = Vec3::Zero();
-  const PlacedFace a{pair.a, pair.a.faces[faces.a], identity, zero};
-  const PlacedFace b{pair.b, pair.b.faces[faces.b], pair.R_AB, pair.p_AB};
-  const bool face_to_face = faces.lie_face_to_face();
-  return reference_is_a(facet, faces) ? clip_faces(a, b, true, facet, margin, face_to_face)
-                                      : clip_faces(b, a, false, facet, margin, face_to_face);
+  const PlacedFace a(pair.a, faces.a), b(pair.b, faces.b, &pair);
+  const bool face_to_face = faces.lie_face_to_face(), of_a = reference_is_a(facet, faces);
+  return clip_faces(of_a ? a : b, of_a ? b : a, of_a, facet, number_of(faces.a, faces.b, of_a), margin,
+                    face_to_face, kept);
 }
 
 /// How far the lowest vertex of a contact along a face's normal lies beside that face; how far edges miss each other.
@@ -177,7 +228,7 @@ Manifold collide(const PolytopePair& pair, const Shape& a, const Shape& b, const
   if (separation > margin) return {};
   Facet facet = answer.facet;
   const FacePair faces = find_faces(pair, facet, cache.vertex_A, cache.vertex_B);
-  Manifold manifold = make_manifold(pair, facet, faces, margin);
+  Manifold manifold = make_manifold(pair, facet, faces, margin, cache.clip);
   AxisContact contact{manifold, separation, pair.a.radius + pair.b.radius, faces.lie_face_to_face()};
   if (separation > 0.0 && contact.face_to_face)
     measure_overhang(pair, facet, faces, cache.vertex_A, cache.vertex_B, contact);
@@ -186,7 +237,7 @@ Manifold collide(const PolytopePair& pair, const Shape& a, const Shape& b, const
   if (closest.lying) {
     facet.normal_A = closest.manifold.normal_A;
     facet.separation = closest.separation;
-    manifold = make_manifold(pair, facet, faces, margin);
+    manifold = make_manifold(pair, facet, faces, margin, cache.clip);
     set_deepest(manifold, closest.separation);
   } else {
     manifold = closest.manifold;

@@ -95,14 +95,17 @@ struct Touch {
   double clearance, lead;
 };
 
-/// How much higher than a corner, the lowest along d, all others are.
-double lead_of_corner(const Polytope& polytope, std::uint32_t lowest, const Vec3& d) {
-  double next = kInfinity;
+/// Until when a corner, the lowest along d, stays it (as FacetAnswer::lead): how much higher its neighbours are; where d
+/// turns with a body of some radius, a neighbour further off than that moves by as much more.
+double lead_of_corner(const Polytope& polytope, std::uint32_t lowest, const Vec3& d, double radius) {
+  double lead = kInfinity;
   for (std::uint32_t k = polytope.neighbour_offsets[lowest]; k < polytope.neighbour_offsets[lowest + 1];
        ++k) {
-    next = std::min(next, d.dot(polytope.vertices[polytope.neighbours[k]]));
+    const Vec3 along = polytope.vertices[polytope.neighbours[k]] - polytope.vertices[lowest];
+    const double rise = d.dot(along);
+    lead = std::min(lead, radius < kInfinity ? rise * std::min(1.0, radius / along.norm()) : rise);
   }
-  return next - d.dot(polytope.vertices[lowest]);
+  return lead;
 }
 
 class FacetSearch {
@@ -110,6 +113,8 @@ class FacetSearch {
   FacetSearch(const PolytopePair& pair, PairCache& cache)
       : a_{pair.a}, b_{pair.b}, R_(pair.R_AB), p_(pair.p_AB), cache_(cache), tie_(tie_of(pair)) {}
 
+  /// Until the next search: the corners in the cache are those that the kept facet's face meets (lead_of_corner).
+  void trust_corners() { corners_are_known_ = true; }
   Facet face_a(std::uint32_t i, double enough = -kInfinity);
   Facet face_b(std::uint32_t i, double enough = -kInfinity);
   Facet edges(const EdgeArc& a, const EdgeArc& b);
@@ -120,6 +125,9 @@ class FacetSearch {
   double prove(const Facet& facet) const;
 
  private:
+  Lowest lowest_of(const Polytope& polytope, const Vec3& d, std::uint32_t start, double enough) const {
+    return corners_are_known_ ? lowest_at(polytope, d, start) : descend(polytope, d, start, enough);
+  }
   double separation_along(const Vec3& n);
   Vec3 corner_of_a() const { return a_.polytope.vertices[cache_.vertex_A]; }
   Vec3 corner_of_b() const { return R_ * b_.polytope.vertices[cache_.vertex_B] + p_; }
@@ -145,6 +153,7 @@ class FacetSearch {
   const Vec3& p_;
   PairCache& cache_;
   const double tie_;
+  bool corners_are_known_ = false;
   double floor_ = -kInfinity;  // a facet separates by this
   /// The best so far, the first of equals in the order faces of A, of B, edges.
   Facet best_{Facet::Kind::none, 0, 0, -kInfinity};
@@ -159,7 +168,7 @@ void FacetSearch::offer(const Facet& facet) {
 Facet FacetSearch::face_a(std::uint32_t i, double enough) {
   const ConvexHull::Face& face = a_.polytope.faces[i];
   const double base = face.normal.dot(p_) - face.offset;
-  const Lowest lowest = descend(b_.polytope, R_.transpose() * face.normal, cache_.vertex_B, enough - base);
+  const Lowest lowest = lowest_of(b_.polytope, R_.transpose() * face.normal, cache_.vertex_B, enough - base);
   cache_.vertex_B = lowest.vertex;
   return {Facet::Kind::face_a, i, 0, lowest.height + base, face.normal};
 }
@@ -168,7 +177,7 @@ Facet FacetSearch::face_b(std::uint32_t i, double enough) {
   const ConvexHull::Face& face = b_.polytope.faces[i];
   const Vec3 normal = R_ * face.normal;
   const double base = -normal.dot(p_) - face.offset;
-  const Lowest lowest = descend(a_.polytope, normal, cache_.vertex_A, enough - base);
+  const Lowest lowest = lowest_of(a_.polytope, normal, cache_.vertex_A, enough - base);
   cache_.vertex_A = lowest.vertex;
   return {Facet::Kind::face_b, 0, i, lowest.height + base, -normal};
 }
@@ -341,9 +350,9 @@ Touch FacetSearch::touch_of_face(const Facet& facet) const {
     touch.clearance = std::min(touch.clearance, face.normal.cross(along).dot(point - tail) / along.norm());
   }
   if (of_a) {
-    touch.lead = lead_of_corner(b_.polytope, cache_.vertex_B, R_.transpose() * facet.normal_A);
+    touch.lead = lead_of_corner(b_.polytope, cache_.vertex_B, R_.transpose() * facet.normal_A, kInfinity);
   } else {
-    touch.lead = lead_of_corner(a_.polytope, cache_.vertex_A, -facet.normal_A);
+    touch.lead = lead_of_corner(a_.polytope, cache_.vertex_A, -facet.normal_A, b_.polytope.radius);
     const std::uint32_t flattest = face_towards(a_.polytope, facet.normal_A, cache_.vertex_A);
     be_not_along(a_.polytope.faces[flattest].normal, facet, touch);
   }
@@ -422,6 +431,7 @@ Facet recall_facet(const PolytopePair& pair, PairCache& cache) {
   const std::uint32_t a = cache.feature >> kIndexBits & (kIndexLimit - 1),
                       b = cache.feature & (kIndexLimit - 1);
   FacetSearch search(pair, cache);
+  if (cache.slack > 0.0) search.trust_corners();
   if (kind == Facet::Kind::face_a && a < pair.a.faces.size()) return search.face_a(a);
   if (kind == Facet::Kind::face_b && b < pair.b.faces.size()) return search.face_b(b);
   if (kind == Facet::Kind::edges && a < pair.a.edges.size() && b < pair.b.edges.size())

@@ -169,6 +169,12 @@ Lowest descend(const Polytope& polytope, const Vec3& d, std::uint32_t start, dou
   return lowest;
 }
 
+Lowest lowest_at(const Polytope& polytope, const Vec3& d, std::uint32_t vertex) {
+  const Vec3& v = polytope.vertices[vertex];
+  if (polytope.vertices.size() > kScannedVertices) return {vertex, d.dot(v)};
+  return {vertex, d.x() * v.x() + d.y() * v.y() + d.z() * v.z()};  // summed as by scan_lowest
+}
+
 std::uint32_t face_towards(const Polytope& polytope, const Vec3& d) {
   return face_towards(polytope, d, descend(polytope, -d, 0, -kInfinity).vertex);
 }

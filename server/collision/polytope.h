@@ -62,6 +62,8 @@ Polytope view_of(const ConvexHull& hull);
 /// Vertex with the least height along d, by descent over edges from vertex `start`. Stops at once below `enough`: the
 /// true least height is then below it too.
 Lowest descend(const Polytope& polytope, const Vec3& d, std::uint32_t start, double enough);
+/// What that says, to the bit, if this vertex is the lowest.
+Lowest lowest_at(const Polytope& polytope, const Vec3& d, std::uint32_t vertex);
 
 /// Among the faces that meet in the furthest vertex along d, the one whose normal goes along d the most: the face that
 /// another body coming from there meets. A function of d alone.

@@ -7,7 +7,7 @@
 hours. Where valgrind is installed, bench_contacts is also run under
 callgrind for the instructions of one query: other than times they hardly differ between machines. Beside bench_NAME a
 program NAME_accuracy... may print a Markdown table of its own; its first argument is the share of its full size to run,
-TUMBLE_SHARE or 0.001. A script NAME_curves.py runs it instead, if there is one, and writes what it draws beside the
+TUMBLE_SHARE or 0.001, with --long all of it: hours. A script NAME_curves.py runs it instead, if there is one, and writes what it draws beside the
 programs.
 """
 import json
@@ -61,10 +61,10 @@ def table(report):
     return "\n".join(lines)
 
 
-def own_table(program):
+def own_table(program, is_long):
     """What a program that prints Markdown says."""
     print(f"running {program.name}", file=sys.stderr)
-    share = os.environ.get("TUMBLE_SHARE", "0.001")
+    share = os.environ.get("TUMBLE_SHARE", "1" if is_long else "0.001")
     curves = HERE / f"{program.name.removesuffix('_accuracy')}_curves.py"
     command = [sys.executable, curves, program, share, program.parent] if curves.is_file() else [program, share]
     return subprocess.run(command, check=True, stdout=subprocess.PIPE, text=True).stdout
@@ -121,7 +121,7 @@ def main():
         sections.append(f"## {path.name}\n{table(report)}")
         for accuracy in sorted(path.parent.glob(path.name.removeprefix("bench_") + "_accuracy*")):
             if accuracy.is_file():
-                sections.append(f"## {accuracy.name}\n{own_table(accuracy)}")
+                sections.append(f"## {accuracy.name}\n{own_table(accuracy, bool(options))}")
     if not wanted or "stream" in wanted:
         sections.append(f"## stream\n{stream_table(build)}")
     if not wanted or "error" in wanted:

@@ -342,19 +342,21 @@ TEST(EveryPair, IsFiniteAndRepeatableForFlatAndNeedleShapes) {
 TEST(Pipeline, SwitchesChangeCostNotContacts) {
   RandomPose random(41);
   const std::vector<Shape> shapes = one_of_each();
-  std::array<NarrowPhaseOptions, 6> options;
+  constexpr std::size_t kSettings = 7;
+  std::array<NarrowPhaseOptions, kSettings> options;
   options[1].use_motion_bound = false;
   options[2].use_cached_axis = false;
   options[3].use_gjk = false;
   options[4].use_cached_facet = false;
   options[5].use_kept_manifold = false;
-  std::array<NarrowPhaseCounters, 6> counters;
+  options[6].use_kept_clip = false;
+  std::array<NarrowPhaseCounters, kSettings> counters;
   int contacts = 0;
   for (int i = 0; i < 288; ++i) {
     const Shape& a = shapes[static_cast<std::size_t>(2 + i % 6)];
     const Shape& b = shapes[static_cast<std::size_t>(2 + i / 6 % 6)];
-    std::array<PairCache, 6> caches;
-    std::array<Manifold, 6> m;
+    std::array<PairCache, kSettings> caches;
+    std::array<Manifold, kSettings> m;
     Pose X_WA = random.pose(0.2), X_WB = random.pose(1.4);
     for (int step = 0; step < 60; ++step) {
       const double pace = i / 36 % 2 == 0 ? 1e-9 : 0.02;
@@ -363,10 +365,10 @@ TEST(Pipeline, SwitchesChangeCostNotContacts) {
         X_WB.q = (turn(axis, pace) * X_WB.q).normalized();
         X_WB.p += pace * (drift - X_WB.p);
       }
-      for (std::size_t k = 0; k < 6; ++k)
+      for (std::size_t k = 0; k < kSettings; ++k)
         update_manifold(a, X_WA, b, X_WB, 0.0, options[k], caches[k], counters[k], m[k]);
       contacts += m[0].count > 0;
-      for (std::size_t k = 1; k < 6; ++k) ASSERT_TRUE(same_to_the_bit(m[k], m[0]));
+      for (std::size_t k = 1; k < kSettings; ++k) ASSERT_TRUE(same_to_the_bit(m[k], m[0]));
     }
   }
   EXPECT_GT(contacts, 1000);
@@ -386,6 +388,8 @@ TEST(Pipeline, SwitchesChangeCostNotContacts) {
   EXPECT_EQ(counters[4].facet_kept, 0u);
   EXPECT_GT(counters[0].unmoved, 500u);
   EXPECT_EQ(counters[5].unmoved, 0u);
+  EXPECT_GT(counters[0].clip_kept, 100u);
+  EXPECT_EQ(counters[6].clip_kept, 0u);
 }
 
 /// Nothing but the same bits of pose and margin is the same question.

@@ -1,0 +1,134 @@
+// The corners that clipping leaves -> contact points: everything up to the margin, merged.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <span>
+
+#include "collision/clip_tape.h"
+#include "collision/manifold_builder.h"
+#include "math/four.h"
+
+namespace tumble {
+
+/// Where the edge from p to q crosses a side that they are `outside` and `next_outside` of [m]; false if they lie on one
+/// side, or as good as on it.
+template <typename Point>
+bool cross_side(const Point& p, const Point& q, double outside, double next_outside, Point& crossing) {
+  const double rise = next_outside - outside;
+  crossing = p + (outside / -rise) * (q - p);
+  return outside * next_outside < 0.0 && std::abs(rise) > ContactTolerance::kNoCrossing;
+}
+
+/// A clipping from its tape: the places of all corners and crossings.
+class TapeReplay {
+ public:
+  TapeReplay(const ClipTape& tape, std::span<const Four> corners) : tape_(tape), made_(corners.size()) {
+    std::copy(corners.begin(), corners.end(), places_.begin());
+  }
+
+  /// One side after the other: `cuts` if it may have anything to cut away, outside(p) how far p lies outside of it. False:
+  /// something else meets than what the tape says.
+  template <typename Outside>
+  bool run_side(std::size_t index, bool cuts, const Outside& outside_of, double tolerance) {
+    const ClipTape::Side& side = tape_.sides[index];
+    if (cuts != (side.count > 0)) return false;
+    std::array<double, ClipTape::kPlaces> outside;
+    std::uint32_t inside = 0;
+    for (std::uint32_t i = 0; i < side.count; ++i) {
+      const std::size_t place = side.loop[i];
+      outside[place] = outside_of(places_[place]);
+      inside |= static_cast<std::uint32_t>(outside[place] <= tolerance) << i;
+    }
+    if (cuts && inside != side.inside) return false;
+    for (std::uint32_t i = 0; i < (cuts ? side.crossings : 0u); ++i) {
+      const auto [from, to] = side.crossing[i];
+      if (!cross_side(places_[from], places_[to], outside[from], outside[to], places_[made_++])) return false;
+    }
+    return true;
+  }
+
+  std::size_t count() const { return tape_.count; }
+  const Four& place(std::size_t i) const { return places_[tape_.left[i]]; }
+  std::uint32_t name(std::size_t i) const { return tape_.names[i]; }
+
+ private:
+  const ClipTape& tape_;
+  std::size_t made_;
+  std::array<Four, ClipTape::kPlaces> places_;  ///< x, y and z in the reference plane's frame.
+};
+
+/// What a manifold needs to know beside its corners.
+struct Lying {
+  Vec3 normal_A;
+  bool overlap;
+  double margin;
+  ContactTolerance tolerance;
+};
+
+/// Points of a manifold as they lie in the reference plane; those that are not there lie far from all.
+struct PointsInPlane {
+  std::array<Four, 2> x = {Four{1e200, 2e200, 3e200, 4e200}, Four{5e200, 6e200, 7e200, 8e200}}, y{};
+
+  void set(std::size_t i, double of_x, double of_y) {
+    x[i / 4][i % 4] = of_x;
+    y[i / 4][i % 4] = of_y;
+  }
+
+  /// The least of all distances between two of them, along x or y whichever is more.
+  double closest() const {
+    Four nearest = four(kInfinity);
+    const auto compare = [&](const Four& xa, const Four& ya, const Four& xb, const Four& yb) {
+      nearest = smaller(larger(absolute(xa - xb), absolute(ya - yb)), nearest);
+    };
+    compare(x[0], y[0], x[1], y[1]);
+    compare(x[0], y[0], rotated<1>(x[0]), rotated<1>(y[0]));
+    compare(x[0], y[0], rotated<2>(x[0]), rotated<2>(y[0]));
+    compare(x[0], y[0], rotated<1>(x[1]), rotated<1>(y[1]));
+    compare(x[0], y[0], rotated<2>(x[1]), rotated<2>(y[1]));
+    compare(x[0], y[0], rotated<3>(x[1]), rotated<3>(y[1]));
+    compare(x[1], y[1], rotated<1>(x[1]), rotated<1>(y[1]));
+    compare(x[1], y[1], rotated<2>(x[1]), rotated<2>(y[1]));
+    return std::min({nearest[0], nearest[1], nearest[2], nearest[3]});
+  }
+};
+
+/// Everything up to the margin. If that is nothing although the bodies overlap, by rounding, the lowest corner of what is
+/// left speaks for it. `middle_A(p)` is the point in A in the middle between p and the plane.
+template <typename Corners, typename MiddleA>
+Manifold collect_points(const Corners& corners, const MiddleA& middle_A, const Lying& lying) {
+  Manifold manifold;
+  manifold.normal_A = lying.normal_A;
+  const std::size_t total = corners.count();
+  std::size_t count = 0;
+  PointsInPlane seen;
+  for (std::size_t i = 0; i < total && count < kMaxManifoldPoints; ++i) {
+    const auto& p = corners.place(i);
+    if (!(p[2] <= lying.margin)) continue;
+    seen.set(count, p[0], p[1]);
+    manifold.points[count++] = {middle_A(p), p[2], corners.name(i)};
+  }
+  manifold.count = static_cast<int>(count);
+  // In the plane they are no further apart than in space but for the tilt of the normal.
+  constexpr double kTilted = 1.25;
+  if (total > kMaxManifoldPoints || !(seen.closest() > kTilted * lying.tolerance.merge)) {
+    manifold.count = 0;
+    for (std::size_t i = 0; i < total && manifold.count < kMaxManifoldPoints; ++i) {
+      const auto& p = corners.place(i);
+      if (!(p[2] <= lying.margin)) continue;
+      manifold.count = add_or_merge(manifold.points.data(), manifold.count, lying.tolerance.merge,
+                                    {middle_A(p), p[2], corners.name(i)});
+    }
+  }
+  if (manifold.count > 0 || !lying.overlap || total == 0) return manifold;
+  std::size_t lowest = 0;
+  for (std::size_t i = 1; i < total; ++i) {
+    if (corners.place(i)[2] < corners.place(lowest)[2]) lowest = i;
+  }
+  const auto& p = corners.place(lowest);
+  manifold = single_point(lying.normal_A, middle_A(p), std::min(p[2], lying.margin), lying.margin,
+                          corners.name(lowest));
+  return manifold;
+}
+
+}  // namespace tumble

@@ -2,6 +2,9 @@
 // rounded as a double is, so the results are those of four scalars, to the bit, on any processor.
 #pragma once
 
+// Everything here is inlined: how such vectors are passed, which differs between processors, is of no concern.
+#pragma GCC diagnostic ignored "-Wpsabi"
+
 namespace tumble {
 
 using Four = double __attribute__((vector_size(32)));

@@ -99,6 +99,12 @@ Pair box_apart(Source& source) {
   return box_pair(source, -0.05);
 }
 
+/// 53 % lie on each other, the others are apart, and all stay so: the mixture behind the figure asked for resting pairs.
+Pair box_calm(Source& source) {
+  const double choice = source.uniform(0.0, 1.0), gap = source.uniform(1e-3, 0.05);
+  return choice < 0.53 ? box_face(source) : box_pair(source, -gap);
+}
+
 Pair sphere_sphere(Source& source) {
   const Pose X_WA{Quat::Identity(), source.vector(-10.0, 10.0)};
   const Vec3 d = source.vector(-1.0, 1.0).normalized();
@@ -137,6 +143,11 @@ Pair hull_rest(Source& source) {
   const Vec3 p = middle - q * support(hull, q.conjugate() * -face.normal) - 1e-4 * face.normal;
   const Pose X_WA{source.rotation(), source.vector(-10.0, 10.0)};
   return {hull, hull, X_WA, X_WA * Pose{q, p}};
+}
+/// As box_calm, 54 %.
+Pair hull_calm(Source& source) {
+  const double choice = source.uniform(0.0, 1.0), gap = source.uniform(1e-3, 0.05);
+  return choice < 0.54 ? hull_rest(source) : hull_pair(source, -gap);
 }
 /// About as often apart as not.
 Pair hull_pass(Source& source) {
@@ -254,6 +265,7 @@ void tumble_kept(benchmark::State& state, Make make, double pace, const NarrowPh
   state.counters["by_gjk"] = share(counters.gjk);
   state.counters["exact"] = share(counters.exact);
   state.counters["facet_kept"] = share(counters.facet_kept);
+  state.counters["clip_kept"] = share(counters.clip_kept);
 }
 
 struct BulletPoints : btDiscreteCollisionDetectorInterface::Result {
@@ -406,20 +418,24 @@ class Registry {
 };
 
 void register_polytopes(Registry& registry) {
-  NarrowPhaseOptions no_motion_bound, no_kept_manifold;
+  NarrowPhaseOptions no_motion_bound, no_kept_manifold, no_kept_clip;
   no_motion_bound.use_motion_bound = false;
   no_kept_manifold.use_kept_manifold = false;
+  no_kept_clip.use_kept_clip = false;
   registry.add_boxes("box_face", box_face);
   registry.add_boxes("box_edge", box_edge);
   registry.add_boxes("box_deep", box_deep);
   registry.add_boxes("box_resting", box_face, 1e-6);
+  registry.add_boxes("box_calm", box_calm, 1e-6);
   registry.add_boxes("box_moving", box_pass, 2e-3);
+  registry.add("box_resting/tumble_clipped_afresh", tumble_kept, box_face, 1e-6, no_kept_clip);
   registry.add("box_face/tumble_unmoved", tumble_kept, box_face, 0.0, NarrowPhaseOptions{});
   registry.add("box_apart/tumble_motion_bound", tumble_kept, box_apart, 1e-6, NarrowPhaseOptions{});
   registry.add("box_apart/tumble_cached_axis", tumble_kept, box_apart, 1e-6, no_motion_bound);
   registry.add_class("hull32_shallow", hull_shallow);
   registry.add_class("hull32_deep", hull_deep);
   registry.add_class("hull32_resting", hull_rest, 1e-7);
+  registry.add_class("hull32_calm", hull_calm, 1e-7);
   registry.add_class("hull32_moving", hull_pass, 2e-3);
   registry.add("hull32_shallow/tumble_facet_kept", tumble_kept, hull_shallow, 0.0, no_kept_manifold);
   registry.add("hull32_apart/tumble_motion_bound", tumble_kept, hull_apart, 1e-6, NarrowPhaseOptions{});

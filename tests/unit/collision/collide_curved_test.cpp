@@ -75,6 +75,23 @@ TEST_P(EveryCurvedPair, NeedlesAndDiscs) {
   }
 }
 
+// Of the optimum next to it, found from gradients in 80 bits and from a direction beside it, so that it can't say yes to
+// whatever it is given. tests/bench/contacts_accuracy_curved runs any number.
+TEST_P(EveryCurvedPair, HasTheNormalOfItsOptimum) {
+  RandomPose random(static_cast<unsigned>(500 + 10 * GetParam().a + GetParam().b));
+  for (int i = 0; i < 40; ++i) {
+    const Overlap overlap = i % 2 == 0 ? Overlap::shallow : Overlap::deep;
+    const Shape a = random_shape(random, GetParam().a, 0.2), b = random_shape(random, GetParam().b, 0.2);
+    const Pose X_AB = place(random, a, b, overlap);
+    const Manifold m = query(a, {}, b, X_AB, 0.05);
+    ASSERT_GE(m.count, 1);
+    const Vec3 aside = (m.normal_A + 1e-5 * random.direction()).normalized();
+    const Vec3L best = DirectionReference(a, b, X_AB).polish(aside).normal_A;
+    EXPECT_LE(static_cast<double>((best - m.normal_A.cast<long double>()).norm()), 1e-10)
+        << "pose " << i;  // measured 5e-12
+  }
+}
+
 std::vector<Types> all_types() {
   std::vector<Types> types;
   for (std::size_t b = 4; b < 7; ++b) {

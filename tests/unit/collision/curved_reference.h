@@ -36,6 +36,47 @@ struct ReachL {
   }
 };
 
+/// The point of a shape that is furthest along d (unit), in its own frame.
+struct FurthestL {
+  const Vec3L& d;
+  using L = long double;
+
+  Vec3L on_rim(L radius, L height) const {
+    const L across = std::sqrt(d.x() * d.x() + d.y() * d.y());
+    return across > 0 ? Vec3L(radius * d.x() / across, radius * d.y() / across, height) : Vec3L(0, 0, height);
+  }
+  template <typename Other>
+  Vec3L operator()(const Other&) const {
+    return Vec3L::Zero();
+  }
+  Vec3L operator()(const Sphere& s) const { return s.radius * d; }
+  Vec3L operator()(const Capsule& c) const {
+    return Vec3L(0, 0, std::copysign(L{c.half_length}, d.z())) + c.radius * d;
+  }
+  Vec3L operator()(const Cylinder& c) const {
+    return on_rim(c.radius, std::copysign(L{c.half_length}, d.z()));
+  }
+  Vec3L operator()(const Cone& c) const {
+    const Vec3L tip(0, 0, c.half_length), rim = on_rim(c.radius, -c.half_length);
+    return tip.dot(d) > rim.dot(d) ? tip : rim;
+  }
+  Vec3L operator()(const Ellipsoid& e) const {
+    const Vec3L h = e.half_axes.cast<L>();
+    return h.cwiseProduct(h.cwiseProduct(d)) / h.cwiseProduct(d).norm();
+  }
+  Vec3L operator()(const Box& b) const {
+    const Vec3L h = b.half_extents.cast<L>();
+    return {std::copysign(h.x(), d.x()), std::copysign(h.y(), d.y()), std::copysign(h.z(), d.z())};
+  }
+  Vec3L operator()(const HullPointer& h) const {
+    Vec3L best = h->vertices[0].cast<L>();
+    for (const Vec3& v : h->vertices) {
+      if (v.cast<L>().dot(d) > best.dot(d)) best = v.cast<L>();
+    }
+    return best;
+  }
+};
+
 /// Unit directions at a height along an axis.
 struct CircleL {
   Vec3L axis;
@@ -67,8 +108,17 @@ struct CirclesOf {
 
 class DirectionReference {
  public:
+  struct Best {
+    long double separation = -std::numeric_limits<long double>::infinity();
+    Vec3L normal_A = Vec3L::UnitZ();
+  };
+
   DirectionReference(const Shape& a, const Shape& b, const Pose& X_AB)
-      : a_(a), b_(b), R_AB_(rotation_matrix_l(X_AB.q)), p_AB_(X_AB.p.cast<long double>()) {}
+      : a_(a),
+        b_(b),
+        R_AB_(rotation_matrix_l(X_AB.q)),
+        p_AB_(X_AB.p.cast<long double>()),
+        size_(bounding_radius(a) + bounding_radius(b)) {}
 
   long double separation(const Vec3L& n_A) const {
     const Vec3L toward_a = -(R_AB_.transpose() * n_A);
@@ -78,11 +128,37 @@ class DirectionReference {
     return separation(Vec3L(n_A.cast<long double>().normalized()));
   }
 
+  /// The optimum that a direction near it belongs to, to the rounding of a gradient instead of the root of that of a
+  /// separation: where the way between the furthest points has no part across n (Newton's method); on a circle where
+  /// supports jump, no part along the circle; where two circles cross; and along faces. The best of these, or the direction
+  /// itself if none is better by more than rounding: round an axis all may be equal.
+  Best polish(const Vec3& n_A) const {
+    const Vec3L start = n_A.cast<long double>().normalized();
+    Best best{separation(start), start};
+    const auto offer = [&](const Vec3L& n) {
+      if (!n.allFinite() || (n - start).norm() > 1e-3L) return;
+      const long double here = separation(Vec3L(n.normalized()));
+      if (here > best.separation + kRounding * size_) best = {here, n.normalized()};
+    };
+    offer(polish_freely(start));
+    const std::vector<CircleL> circles = all_circles();
+    for (std::size_t i = 0; i < circles.size(); ++i) {
+      if (std::abs(circles[i].axis.dot(start) - circles[i].height) > 1e-3L) continue;
+      offer(polish_on_circle(circles[i], start));
+      for (std::size_t j = 0; j < i; ++j) offer(cross(circles[i], circles[j], start));
+    }
+    for (int k = 0; k < 3; ++k) {
+      for (const long double side : {-1.0L, 1.0L}) {
+        offer(side * Vec3L::Unit(k));
+        offer(side * R_AB_.col(k));
+      }
+    }
+    offer_faces(a_, [&](const Vec3L& n) { offer(n); });
+    offer_faces(b_, [&](const Vec3L& n) { offer(-(R_AB_ * n)); });
+    return best;
+  }
+
   /// Best of `directions` spread evenly and the axes of both shapes, after improving the `seeds` best.
-  struct Best {
-    long double separation = -std::numeric_limits<long double>::infinity();
-    Vec3L normal_A = Vec3L::UnitZ();
-  };
   Best search(int directions, std::size_t seeds) const {
     std::vector<Best> candidates;
     const auto add = [&](const Vec3L& n) { candidates.push_back({separation(n), n}); };
@@ -109,11 +185,7 @@ class DirectionReference {
       const Best improved = improve(candidate);
       if (improved.separation > best.separation) best = improved;
     }
-    std::vector<CircleL> circles, circles_b;
-    std::visit(CirclesOf{circles}, a_);
-    std::visit(CirclesOf{circles_b}, b_);
-    for (const CircleL& c : circles_b) circles.push_back({-(R_AB_ * c.axis), c.height});
-    for (const CircleL& circle : circles) {
+    for (const CircleL& circle : all_circles()) {
       const Best on_circle = search_circle(circle);
       if (on_circle.separation > best.separation) best = on_circle;
     }
@@ -121,6 +193,83 @@ class DirectionReference {
   }
 
  private:
+  std::vector<CircleL> all_circles() const {
+    std::vector<CircleL> circles, circles_b;
+    std::visit(CirclesOf{circles}, a_);
+    std::visit(CirclesOf{circles_b}, b_);
+    for (const CircleL& c : circles_b) circles.push_back({-(R_AB_ * c.axis), c.height});
+    return circles;
+  }
+
+  template <typename Offer>
+  static void offer_faces(const Shape& shape, const Offer& offer) {
+    if (const auto* hull = std::get_if<HullPointer>(&shape)) {
+      for (const ConvexHull::Face& face : (*hull)->faces)
+        offer(Vec3L(face.normal.cast<long double>().normalized()));
+    }
+  }
+
+  /// From A's furthest point along n to B's: the gradient of the separation.
+  Vec3L way(const Vec3L& n) const {
+    const Vec3L toward_a = -(R_AB_.transpose() * n);
+    return p_AB_ + R_AB_ * std::visit(FurthestL{toward_a}, b_) - std::visit(FurthestL{n}, a_);
+  }
+
+  Vec3L polish_freely(Vec3L n) const {
+    constexpr long double kStep = 1e-8L;
+    for (int i = 0; i < 30; ++i) {
+      const Vec3L u = n.unitOrthogonal(), v = n.cross(u);
+      const auto slope = [&](long double x, long double y) -> Eigen::Matrix<long double, 2, 1> {
+        const Vec3L m = (n + x * u + y * v).normalized(), w = way(m);
+        const Vec3L across = w - w.dot(m) * m;
+        return {across.dot(u), across.dot(v)};
+      };
+      const auto f = slope(0, 0);
+      if (i == 0 && f.norm() <= kFlat * size_) return n;
+      Eigen::Matrix<long double, 2, 2> jacobian;
+      jacobian.col(0) = (slope(kStep, 0) - slope(-kStep, 0)) / (2 * kStep);
+      jacobian.col(1) = (slope(0, kStep) - slope(0, -kStep)) / (2 * kStep);
+      Eigen::Matrix<long double, 2, 1> step = -jacobian.inverse() * f;
+      if (!step.allFinite()) return n;
+      if (step.norm() > 1e-4L) step *= 1e-4L / step.norm();
+      n = (n + step.x() * u + step.y() * v).normalized();
+      if (step.norm() < 1e-17L) break;
+    }
+    return n;
+  }
+
+  /// Bisection of the slope along the circle about the place nearest to n.
+  Vec3L polish_on_circle(const CircleL& circle, const Vec3L& n) const {
+    const Vec3L u = (n - n.dot(circle.axis) * circle.axis).normalized(), v = circle.axis.cross(u);
+    const long double across = std::sqrt(1.0L - circle.height * circle.height);
+    const auto at = [&](long double angle) -> Vec3L {
+      return circle.height * circle.axis + across * (std::cos(angle) * u + std::sin(angle) * v);
+    };
+    const auto slope = [&](long double angle) {
+      return way(at(angle)).dot(Vec3L(std::cos(angle) * v - std::sin(angle) * u));
+    };
+    if (std::abs(slope(0)) <= kFlat * size_) return at(0);
+    long double low = -1e-3L, high = 1e-3L;
+    for (int i = 0; i < 70; ++i) {
+      const long double middle = 0.5L * (low + high);
+      (slope(middle) > 0 ? low : high) = middle;
+    }
+    return at(0.5L * (low + high));
+  }
+
+  /// Where two circles cross near n: Newton's method on both heights and the length.
+  static Vec3L cross(const CircleL& a, const CircleL& b, Vec3L n) {
+    for (int i = 0; i < 20; ++i) {
+      Mat3L jacobian;
+      jacobian.row(0) = a.axis.transpose();
+      jacobian.row(1) = b.axis.transpose();
+      jacobian.row(2) = n.transpose();
+      const Vec3L residual(a.axis.dot(n) - a.height, b.axis.dot(n) - b.height, 0.5L * (n.squaredNorm() - 1));
+      n -= jacobian.inverse() * residual;
+    }
+    return n;
+  }
+
   /// Thirds between the neighbours of each sample that is a local maximum.
   Best search_circle(const CircleL& circle) const {
     constexpr int kSamples = 180;
@@ -170,9 +319,15 @@ class DirectionReference {
     return best;
   }
 
+  static constexpr long double kRounding = 1e-18L;  // of a separation, as a share of the size
+  /// As a share of the size, the slope of the separation that the rounding of a pose in double makes: where it is no
+  /// steeper, as round an axis that both shapes share, one direction is as good as the next.
+  static constexpr long double kFlat = 1e-15L;
+
   const Shape &a_, &b_;
   Mat3L R_AB_;
   Vec3L p_AB_;
+  long double size_;
 };
 
 }  // namespace tumble::test

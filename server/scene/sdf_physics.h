@@ -36,6 +36,10 @@ void for_each_option(OptionsType& options, Visit&& visit) {
   visit("max_impacts", options.max_impacts);
   visit("impact_events", options.impact_events);
   visit("slide_bodies", options.slide_bodies);
+  visit("landing_bodies", options.landing_bodies);
+  visit("max_cuts", options.max_cuts);
+  visit("midpoint_bodies", options.midpoint_bodies);
+  visit("midpoint_turn", options.midpoint_turn);
   visit("warm_start", options.warm_start);
   visit("rest_residual", options.rest.residual);
   visit("rest_speed", options.rest.speed);

@@ -24,9 +24,12 @@ struct Counters {
   std::uint64_t patterns_kept = 0, patterns_made = 0;  ///< Patterns of factorization found again, and made.
   std::uint64_t solver_fallbacks = 0;                  ///< Islands without a trustworthy exact solution.
   std::uint64_t slides_ended = 0;                      ///< Within a step, at times of their own.
-  std::uint64_t impacts = 0;                           ///< Pairs that struck.
-  std::uint64_t impacts_capped = 0;  ///< Bodies and islands whose impacts reached the bound of a step.
-  std::uint64_t impacts_micro = 0;   ///< Impacts below the threshold: resting contact from then on.
+  std::uint64_t landings = 0;             ///< Contacts that closed without restitution, likewise.
+  std::uint64_t cuts_capped = 0;          ///< Steps of islands that were cut as often as they may be.
+  std::uint64_t islands_by_midpoint = 0;  ///< Parts of steps with the forces of their middle.
+  std::uint64_t impacts = 0;              ///< Pairs that struck.
+  std::uint64_t impacts_capped = 0;       ///< Bodies and islands whose impacts reached the bound of a step.
+  std::uint64_t impacts_micro = 0;        ///< Impacts below the threshold: resting contact from then on.
   std::uint64_t impacts_ended = 0;  ///< Bouncing that came to its end (all that was left fitted in the step).
   std::uint64_t impacts_clamped = 0;  ///< Restitution shortened, since it would have raised kinetic energy.
   std::uint64_t impacts_gained = 0;   ///< Impacts that raised kinetic energy beyond rounding: always 0.

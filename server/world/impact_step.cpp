@@ -332,7 +332,7 @@ void World::store_blow() {
     const SolverBody& struck = scratch_.problem.bodies[i];
     const std::uint32_t slot = scratch_.problem_slot[i];
     Motion& motion = motions_[slot];
-    const Scratch::AfterForces& after = scratch_.after_forces[i];
+    const AfterForces& after = scratch_.after_forces[i];
     motion.v = struck.v;
     motion.L = after.L + after.I_W * (struck.w - struck.inv_I_W * after.L);
     motion.w = angular_velocity(masses_[slot], motion.q, motion.L);

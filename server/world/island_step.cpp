@@ -10,8 +10,8 @@
 namespace tumble {
 namespace {
 
-/// Of one island that end in one step at times of their own; what is left ends with the step.
-constexpr int kMostSlides = 4;
+/// [m/s, rad/s] slower islands are on their way to rest, which asks for less.
+constexpr double kMoving = 1e-3;
 
 }  // namespace
 
@@ -52,11 +52,20 @@ void World::advance_connected(std::size_t island, const StepContext& step) {
   prepare(problem, step.bounds);
   // With events, impacts have their own times. The slides' solver bounces as taught, inside its own passes.
   if (!step.impact_events && options_.solver != Solver::course_impulse) bounce(problem);
-  solve_problem(step);
   StepContext rest = step;
-  for (int slides = 0; slides < kMostSlides && advance_slide(island, rest);) ++slides;
-  if (try_rest(scratch_.residual)) return;
-  move_bodies(rest);
+  // What moves for long adds up what is wrong with its forces.
+  if (may_be_cut(step, options_.midpoint_bodies) && island_speed(problem) > kMoving)
+    rest.solver_settings.tolerance = std::min(step.solver_settings.tolerance, kSharp);
+  solve_problem(rest);
+  int cuts = 0;
+  while (!try_rest(scratch_.residual)) {
+    const bool may_cut = cuts < options_.max_cuts;
+    const Advance advance =
+        may_cut && advance_landing(island, rest) ? Advance::part : advance_until_cut(island, rest, may_cut);
+    if (advance == Advance::whole) return;
+    if (advance == Advance::none) return move_bodies(rest);
+    counters_.cuts_capped += ++cuts == options_.max_cuts;
+  }
 }
 
 void World::solve_problem(const StepContext& step) {
@@ -133,7 +142,7 @@ std::uint32_t World::problem_body(std::uint32_t slot, double h) {
   const MassProperties& mass = masses_[slot];
   body.inv_mass = mass.inv_mass;
   body.inv_I_W = world_inertia(mass.inv_I, mass.q_BP, motion.q);
-  Scratch::AfterForces& after = scratch_.after_forces.emplace_back();
+  AfterForces& after = scratch_.after_forces.emplace_back();
   velocities_after_forces(slot, h, body.v, after.L);
   after.I_W = world_inertia(mass.I, mass.q_BP, motion.q);
   body.w = body.inv_I_W * after.L;
@@ -209,13 +218,13 @@ void World::add_row(ScalarRow row, std::uint32_t tie_index, std::uint32_t index)
 void World::store_impulses() {
   for (std::size_t i = 0; i < scratch_.problem.contacts.size(); ++i) {
     const PointContact& row = scratch_.problem.contacts[i];
-    const Scratch::Source source = scratch_.contact_source[i];
+    const ContactSource source = scratch_.contact_source[i];
     const Vec3 impulse = in_world(row, row.lambda) / scratch_.impulse_share;
     contacts_.all()[source.contact].impulse[source.point] =
         impulse.allFinite() ? impulse : Vec3(Vec3::Zero());
   }
   for (const Turning& turning : scratch_.problem.turnings) {
-    const Scratch::Source source = scratch_.contact_source[turning.contact];
+    const ContactSource source = scratch_.contact_source[turning.contact];
     const Vec3 moment =
         in_world(scratch_.problem.contacts[turning.contact], turning.lambda) / scratch_.impulse_share;
     contacts_.all()[source.contact].moment[source.point] = moment.allFinite() ? moment : Vec3(Vec3::Zero());
@@ -272,7 +281,7 @@ void World::move_bodies(const StepContext& step) {
 VelocityPath World::velocity_path(std::uint32_t i, double share) const {
   const SolverBody& solved = scratch_.problem.bodies[i];
   // Momentum after the forces plus what the impulses changed, so that a body no impulse met keeps its bits.
-  const Scratch::AfterForces& after = scratch_.after_forces[i];
+  const AfterForces& after = scratch_.after_forces[i];
   const Vec3 L1 = after.L + after.I_W * (solved.w - solved.inv_I_W * after.L);
   VelocityPath path{.v0 = solved.v, .v1 = solved.v, .L0 = L1, .L1 = L1};
   if (share == 0.0) return path;
@@ -291,8 +300,9 @@ VelocityPath World::velocity_path(std::uint32_t i, double share) const {
 /// (v0 - v)/2 as gains nothing but the work by which overlaps are pushed apart; without it the impulses take energy away,
 ///   dE(share) = sum lambda.(u0 + u)/2 + what turning adds to L.w/2 - (1 - share) sum h F.(v - v0)/2 .
 double World::gainless_share(const StepContext& step) const {
-  constexpr double kSlack = 1e-8;    // [m] by which a load may be lifted, as in choose_drift
-  constexpr double kInside = 0.999;  // of the limit, so that the next trial is not decided by rounding
+  constexpr double kSlack = 1e-8;      // [m] by which a load may be lifted, as in choose_drift
+  constexpr double kInside = 0.999;    // of the limit, so that the next trial is not decided by rounding
+  constexpr double kRounding = 1e-14;  // of the energy of turning
   constexpr int kTrials = 4;
   const ContactProblem& problem = scratch_.problem;
   if (problem.contacts.empty()) return 1.0;
@@ -307,6 +317,7 @@ double World::gainless_share(const StepContext& step) const {
     const std::uint32_t slot = scratch_.problem_slot[i];
     const SolverBody& solved = problem.bodies[i];
     given_up += 0.5 * step.h * masses_[slot].mass * acceleration_of(slot).dot(solved.v - solved.v0);
+    allowed += kRounding * std::abs(motions_[slot].L.dot(motions_[slot].w));
   }
   const double least = work - given_up;
   double share = 1.0;

@@ -15,18 +15,25 @@ void set_accuracy(Options& options, Accuracy accuracy) {
       solver.tolerance = 1e-6;
       solver.exact_work = 300.0;
       solver.longest_sub_step = 1.0;
+      options.landing_bodies = options.midpoint_bodies = 0;
       break;
     case Accuracy::balanced:
       solver.max_sweeps = SolverSettings{}.max_sweeps;
       solver.tolerance = SolverSettings{}.tolerance;
       solver.exact_work = SolverSettings{}.exact_work;
       solver.longest_sub_step = SolverSettings{}.longest_sub_step;
+      options.landing_bodies = Options{}.landing_bodies;
+      options.midpoint_bodies = Options{}.midpoint_bodies;
+      options.midpoint_turn = Options{}.midpoint_turn;
       break;
     case Accuracy::exact:
       solver.max_sweeps = 1000;
       solver.tolerance = 1e-10;
       solver.exact_work = 1e6;
       solver.longest_sub_step = 1.0 / 3840.0;
+      options.landing_bodies = Options{}.landing_bodies;
+      options.midpoint_bodies = Options{}.midpoint_bodies;
+      options.midpoint_turn = 0.0025;
       break;
   }
 }
@@ -55,6 +62,10 @@ std::string check_options(const Options& options) {
       {"restitution threshold", options.restitution_threshold, 0.0, 1e3},
       {"max impacts", static_cast<double>(options.max_impacts), 1.0, 1e6},
       {"slide bodies", static_cast<double>(options.slide_bodies), 0.0, 1e6},
+      {"landing bodies", static_cast<double>(options.landing_bodies), 0.0, 1e6},
+      {"midpoint bodies", static_cast<double>(options.midpoint_bodies), 0.0, 1e6},
+      {"midpoint turn", options.midpoint_turn, 1e-4, 10.0},
+      {"max cuts", static_cast<double>(options.max_cuts), 0.0, 1000.0},
       {"max sweeps", static_cast<double>(options.solver_settings.max_sweeps), 1.0, 1e6},
       {"tolerance", options.solver_settings.tolerance, 0.0, 1.0},
       {"exact work", options.solver_settings.exact_work, 0.0, 1e9},

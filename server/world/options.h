@@ -41,6 +41,18 @@ struct Options {
   /// Largest island, in movable bodies, whose slides end (stop, or turn into rolling) at their own time within a step; of
   /// larger ones they end with the step, which is wrong by mu g h^2/2 at most. Two or three solutions each. 0: none.
   int slide_bodies = 8;
+  /// The same of contacts that close without restitution: the island's step is cut where they do. Larger islands close them
+  /// at the end of the step. Three or four solutions each. 0: none.
+  int landing_bodies = 8;
+  /// Such cuts an island and step, those where bodies have turned far (midpoint_turn) included; what is left ends with the
+  /// step.
+  int max_cuts = 32;
+  /// Largest island, in movable bodies, whose forces of contact are those of the middle of the step, as far as its motion
+  /// is smooth: second order where arms or normals turn (a coin that rolls, a rod that falls). One or two solutions and two
+  /// looks at its contacts more. 0: none, and the forces are those of the start of the step.
+  int midpoint_bodies = 8;
+  /// [rad] a body turns at most in a part of such a step; errors go with its square, cost with its inverse.
+  double midpoint_turn = 0.05;
   bool warm_start = true;  ///< Off: every solve starts from zero impulses.
   /// Off: patterns of factorization are made anew for every solve, with the same results.
   bool keep_patterns = true;
@@ -56,7 +68,8 @@ struct Options {
 };
 
 /// Options for a level of accuracy: budgets and tolerances together. dynamics/README.md says what each does and costs.
-///   fast: warm starts from 1e-6 m/s on, only small islands exact, 4 sub-steps a step for the others.
+///   fast: warm starts from 1e-6 m/s on, only small islands exact, 4 sub-steps a step for the others; no landings cut, no
+///         forces of the middle of the step.
 ///   balanced: the defaults.
 ///   exact: 1e-10 m/s, islands of up to a million products of blocks exact at any speed, sub-steps of 1/3840 s.
 void set_accuracy(Options& options, Accuracy accuracy);

@@ -1,7 +1,6 @@
 // Slides that end within a step. Friction jumps where a slide ends: an island that takes it for one mean force over the
 // whole step is wrong by terms of h^2. Here the step of the island is cut at that moment, found by solving for the part
-// of the step up to it: while all slide, velocities run linearly, so the second or third part is exact. The arms of the
-// contacts stay what they are at the start of the step. World frame.
+// of the step up to it: while all slide, velocities run linearly, so the second or third part is exact. World frame.
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -18,8 +17,6 @@ constexpr double kPressed = 1e-6;
 /// Share of the friction limit that is not all of it.
 constexpr double kShare = 1e-6;
 constexpr int kMostTrials = 12;
-/// [m/s] of a whole step's impulses: what is wrong with the forces would be accepted by every step that follows.
-constexpr double kTolerance = 1e-12;
 
 Vec3 tangential(const Vec3& u, const PointContact& c) {
   return u - u.dot(c.n) * c.n;
@@ -54,32 +51,7 @@ bool ends_slide(const ContactProblem& problem, const PointContact& c) {
 }  // namespace
 
 bool World::may_end_slides(const StepContext& step) const {
-  if (step.ways_only || scratch_.problem.drift != ContactProblem::Drift::average ||
-      scratch_.problem_movable > static_cast<std::uint32_t>(options_.slide_bodies))
-    return false;
-  // Driven partners stand at the start of the whole step.
-  return std::none_of(scratch_.problem_slot.begin() + scratch_.problem_movable, scratch_.problem_slot.end(),
-                      [this](std::uint32_t slot) { return slot != kWorld && takes_part(slot); });
-}
-
-void World::solve_part(std::size_t island, const StepContext& part) {
-  const std::vector<PointContact> at_start = scratch_.problem.contacts;
-  build_problem(island, part);
-  scratch_.impulse_share = part.h / options_.time_step;
-  for (std::size_t i = 0; i < at_start.size(); ++i) {
-    PointContact& c = scratch_.problem.contacts[i];
-    c.rA = at_start[i].rA;
-    c.rB = at_start[i].rB;
-    c.separation *= scratch_.impulse_share;  // it may close at the same speed as in the whole step
-    c.lambda *= scratch_.impulse_share;
-  }
-  for (ScalarRow& row : scratch_.problem.rows) row.lambda *= scratch_.impulse_share;
-  for (Turning& turning : scratch_.problem.turnings) turning.lambda *= scratch_.impulse_share;
-  prepare(scratch_.problem, part.bounds);
-  StepContext sharp = part;
-  sharp.solver_settings.tolerance =
-      std::min(part.solver_settings.tolerance, kTolerance * scratch_.impulse_share);
-  solve_problem(sharp);
+  return scratch_.problem.drift == ContactProblem::Drift::average && may_be_cut(step, options_.slide_bodies);
 }
 
 /// Leaves the island solved up to that moment. None, and solved for anything: it was not found before the end.
@@ -126,14 +98,19 @@ bool World::advance_slide(std::size_t island, StepContext& rest) {
     return false;
   }
   ++counters_.slides_ended;
+  std::vector<Touch> touches = note_touches(rest);
+  for (const std::size_t i : ending) touches[i].sticks = true;
   const std::vector<PointContact> first = problem.contacts;
   StepContext part = rest;
   part.h = *end;
   move_bodies(part);
+  update_island_contacts(island, part);
+  hold_touches(island, touches, part);
   rest.h -= *end;
   rest.begin += *end;
   solve_part(island, rest);
-  if (part.h > rest.h) {  // the longer part knows the pressure with more digits
+  // The longer part knows the pressure with more digits.
+  if (part.h > rest.h && first.size() == problem.contacts.size()) {
     for (std::size_t i = 0; i < first.size(); ++i)
       scratch_.problem.contacts[i].lambda.x() = rest.h / part.h * first[i].lambda.x();
     store_impulses();

@@ -21,6 +21,7 @@
 #include "world/diagnostics.h"
 #include "world/impact_events.h"
 #include "world/options.h"
+#include "world/part.h"
 
 namespace tumble {
 
@@ -114,6 +115,10 @@ class World {
   template <typename>
   friend struct Archived;  // its list of members, archive.cpp
   static constexpr std::uint32_t kWorld = 0xffffffffu;
+  /// [m] at the start of a part of a step: what is nearer touches.
+  static constexpr double kOpen = 1e-6;
+  /// [m/s] to which parts are solved: what is wrong with forces would be accepted by every step that follows.
+  static constexpr double kSharp = 1e-12;
 
   struct ActivePush {
     Push push;
@@ -160,20 +165,13 @@ class World {
     SmoothSystem smooth;
     ContactProblem problem;
     PatternStore patterns;
-    std::vector<std::uint32_t> problem_slot;  // slot of each body of the problem
-    std::vector<std::uint32_t> local;         // by slot: index in the problem, or kWorld
-    struct Source {
-      std::uint32_t contact, point;
-    };
-    std::vector<Source> contact_source;  // also of turnings, by their contacts
+    std::vector<std::uint32_t> problem_slot;    // slot of each body of the problem
+    std::vector<std::uint32_t> local;           // by slot: index in the problem, or kWorld
+    std::vector<ContactSource> contact_source;  // also of turnings, by their contacts
     struct RowSource {
       std::uint32_t tie, row;
     };
     std::vector<RowSource> row_source;
-    struct AfterForces {
-      Vec3 L;
-      Mat3 I_W;
-    };
     std::vector<AfterForces> after_forces;  // of the problem's movable bodies, before the impulses
     ImpactEvents events;
     std::vector<std::uint32_t> flying;                    // contacts that may strike in this step
@@ -181,7 +179,9 @@ class World {
     bool contacts_indexed = false;
     std::vector<std::pair<std::uint32_t, Motion>> held;  // slots that pushes would carry beyond all numbers
     double residual = 0.0;                               // [m/s] of the problem's solution
-    double impulse_share = 1.0;                          // of a whole step's impulses that the problem's are
+    IslandState part_start, landing_start;               // to go back to from a trial
+    std::vector<std::uint32_t> island_contacts;
+    double impulse_share = 1.0;         // of a whole step's impulses that the problem's are
     std::uint32_t problem_movable = 0;  // the first bodies of the problem; the rest are immovable partners
   };
   struct StepContext {
@@ -191,9 +191,11 @@ class World {
     SolveFunction solve;
     SolverSettings solver_settings;
     BoundSettings bounds;
+    double whole = h;            // [s] of the step, where this is a part of it
     double begin = 0.0;          // [s] of this part of the step
     bool impact_events = false;  // times of impact are found
     bool ways_only = false;      // bodies get a trajectory through the step instead of being moved at once
+    bool airborne = false;       // open contacts are left out of the problem: they do not close in this part
   };
 
   /// What takes part in one impact: bodies that act on each other through contacts and ties, and the pairs that strike.
@@ -317,14 +319,67 @@ class World {
   void contain(std::uint32_t slot, const Motion& last_good);
   void hold(std::uint32_t slot, const Motion& at);
 
+  // part_step.cpp: what steps in parts share.
+  /// Of the island: no ties, no turning friction, no driven partner, at most so many movable bodies.
+  bool may_be_cut(const StepContext& step, int most_bodies) const;
+  double acceleration_at(const PointContact& contact) const;
+  /// At the start of a part: apart, by more than forces and turning close within a step, or on the way to meet.
+  bool is_open(const PointContact& contact, const StepContext& part) const;
+  void leave_out_open_contacts(const StepContext& part);
+  /// Builds the island's problem for a part of the step, where it is now, and solves it sharply.
+  void solve_part(std::size_t island, const StepContext& part);
+  /// Moves the solved island smoothly through the rest of the step, or up to where a slide ends or it has turned far, and
+  /// solves for what is then left.
+  Advance advance_until_cut(std::size_t island, StepContext& rest, bool may_cut);
+  void update_island_contacts(std::size_t island, const StepContext& part);
+  const std::vector<std::uint32_t>& contacts_of_island(std::size_t island);
+  void note_island(std::size_t island, IslandState& state);
+  void restore_island(std::size_t island, const IslandState& state);
+  std::vector<Touch> note_touches(const StepContext& part) const;
+  const Touch* find_touch(const std::vector<Touch>& touches, std::size_t row) const;
+  /// The island as it is now, without forces, as a blow or a correction of velocities meets it.
+  void build_instant_problem(std::size_t island, const StepContext& part);
+  /// Takes from the velocities what the points that are pressed would approach, part or, where they stick, slide with:
+  /// rounding, and what their arms turned since they were solved.
+  void hold_touches(std::size_t island, const std::vector<Touch>& touches, const StepContext& part);
+
   // slide_step.cpp: slides that end within the step.
   bool may_end_slides(const StepContext& step) const;
-  void solve_part(std::size_t island, const StepContext& part);
   std::optional<double> find_end_of_slide(std::size_t island, const StepContext& rest,
                                           const std::vector<std::size_t>& ending, double guess);
   /// If a contact of the solved island stops sliding within the rest of the step: moves the island there and solves for
   /// what is then left of the step, which is the rest from now on. False: solved as before.
   bool advance_slide(std::size_t island, StepContext& rest);
+
+  // landing_step.cpp: contacts that close within the step, without restitution.
+  /// If one does: moves the island there, stops it, and solves for what is then left of the step. False: as before.
+  bool advance_landing(std::size_t island, StepContext& rest);
+  double find_landing(const ContactProblem& start, const StepContext& rest, double& speed) const;
+  double landing_gap(std::size_t island, const std::vector<Touch>& held);
+  void land_island(std::size_t island, const StepContext& part);
+
+  // midpoint_step.cpp: smooth motion in contact, of second order.
+  /// Moves the solved island through the rest of the step, or where it may be cut through a part of it, and solves for
+  /// what is then left. None: it does not suit, and nothing has changed.
+  Advance advance_midpoint(std::size_t island, StepContext& rest, bool may_cut);
+  bool suits_midpoint(const StepContext& part, const std::vector<Touch>& touches) const;
+  bool may_turn(const Touch& touch, const StepContext& part) const;
+  double length_of_part(const StepContext& rest) const;
+  bool try_midpoint(std::size_t island, const StepContext& part, Midpoint& way);
+  bool shorten_to_end_of_slide(std::size_t island, StepContext& part, Midpoint& way);
+  void finish_midpoint(std::size_t island, const StepContext& part, const Midpoint& way);
+  void place_in_middle(const Midpoint& way, const StepContext& part);
+  void build_mean_problem(std::size_t island, const StepContext& part, const std::vector<Touch>& touches);
+  bool has_turned(const std::vector<Touch>& touches) const;
+  bool solve_mean_problem(const StepContext& part, Midpoint& way);
+  double update_ends(const StepContext& part, const std::vector<Motion>& start,
+                     const std::vector<SolverBody>& free, std::vector<Motion>& ends,
+                     std::vector<Vec3>& balance) const;
+  Vec3 velocity_at_end(std::size_t row, const Midpoint& way, Vec3& n) const;
+  double correct_bounds(const StepContext& part, const Midpoint& way);
+  bool slides(const StepContext& part, const PointContact& contact) const;
+  bool is_smooth(const StepContext& part, Midpoint& way) const;
+  double slowest_slide(const StepContext& part, const PointContact& contact) const;
 
   // impact_step.cpp: the impacts of one step, in order of time.
   /// Whether the pair is left out of the smooth problem: it may strike, or is on its way apart.

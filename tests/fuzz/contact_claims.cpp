@@ -98,6 +98,7 @@ class Claims {
   Verdict run() {
     check_numbers();
     check_repeats();
+    check_moves();
     check_swap();
     check_plane();
     check_points();
@@ -145,6 +146,26 @@ class Claims {
     for (int i = 0; i < 2; ++i) {
       update_manifold(a, X_WA, b, X_WB, margin, {}, cache, counters, kept);
       claim(same_bits(manifold_, kept), "another answer from memory");
+    }
+  }
+
+  /// What is remembered of one pose is no part of the answer at the next, near or far.
+  void check_moves() {
+    const auto& [a, b, X_WA, X_WB, margin] = pair_;
+    PairCache cache;
+    NarrowPhaseCounters counters;
+    Manifold kept;
+    Pose X_WM = X_WB;
+    for (const double share : {0.0, 1e-9, 1e-7, 1e-4, 1e-2}) {
+      X_WM.p += share * bounding_radius(b) * Vec3(0.36, -0.48, 0.8);
+      X_WM.q = normalized(Quat(1.0, 0.6 * share, 0.0, -0.8 * share) * X_WM.q);
+      if (!X_WM.p.allFinite()) return;
+      update_manifold(a, X_WA, b, X_WM, margin, {}, cache, counters, kept);
+      PairCache cold;
+      cold.order = cache.order;  // is decided once
+      const Manifold afresh = collide(a, X_WA, b, X_WM, margin, {}, cold, counters);
+      if (least_separation(afresh) <= 0.0)
+        claim(same_bits(afresh, kept), "another answer after moving by {}", share);
     }
   }
 

@@ -133,6 +133,15 @@ void add_options(CLI::App& app, Arguments& a, Names& names) {
       "--health", a.health,
       "Listen for a server of this world on this machine: exit status 0 if it is heard within 2 s, else 1");
   add_log_options(app, a);
+  app.footer(
+      "Examples:\n"
+      "  tumble-server --demo pile\n"
+      "  tumble-server scene.sdf --record run.lcm\n"
+      "  tumble-server --resume run.lcm\n"
+      "  tumble-server --demo pyramid --fast --steps 2400 --summary json\n\n"
+      "Ctrl-C or SIGTERM ends it and closes its log. Exit status: 0 ended as asked; 1 the system refused "
+      "something, "
+      "such\nas the bus, or a replay differs; 2 wrong arguments or scene, nothing was started.");
   app.set_version_flag("--version", std::string("tumble-server ") + kVersion);
 }
 

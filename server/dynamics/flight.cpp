@@ -32,11 +32,14 @@ Motion Flight::at(double t) const {
   assert(turns_freely());
   // Damping keeps the direction of L: the body turns as a free one does whose clock slows down with L.
   const double c = load_.angular_damping;
-  const double decay = c == 0.0 ? 1.0 : exp_decay(-c * t);
-  const double clock = c == 0.0 ? t : t * mean_decay(c * t);
-  const FreeRotation::State rotation = rotation_.at(clock);
-  return {
-      .x = position(t), .q = rotation.q_WB, .v = velocity(t), .L = decay * L_, .w = decay * rotation.w_WB};
+  const FreeRotation::State rotation = rotation_.at(c == 0.0 ? t : t * mean_decay(c * t));
+  Motion motion{.x = position(t), .q = rotation.q_WB, .v = velocity(t), .L = L_, .w = rotation.w_WB};
+  if (c > 0.0) {
+    const double decay = exp_decay(-c * t);
+    motion.L *= decay;
+    motion.w *= decay;
+  }
+  return motion;
 }
 
 Motion Flight::stepped(const MassProperties& mass, const Quat& q_at_t0, double t0, double t1) const {

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "dynamics/integrator.h"
+#include "math/lanes.h"
 
 namespace tumble {
 namespace {
@@ -27,84 +28,88 @@ constexpr int kMaxSubSteps = 256;
 /// about its momentary axis, so that the orientation stays finite; the momentum is exact all the same.
 constexpr double kLargestSubTurn = 1.0;
 
-using Coefficients = std::array<double, kOrder + 1>;
-
-struct VectorSeries {
-  Coefficients x, y, z;
-};
-
-/// Coefficient k of the product of two series. k is a template argument so that every loop unrolls (a quarter faster).
-template <std::size_t k>
-double product(const Coefficients& a, const Coefficients& b) {
-  return [&]<std::size_t... i>(std::index_sequence<i...>) {
-    return (... + (a[i] * b[k - i]));
-  }
-  (std::make_index_sequence<k + 1>());
-}
-
-/// The series of one turn, from the momentum and torque in P at its start.
+/// The series of one turn of h [s], in time counted in h, from the momentum and torque in P at its start. Vectors are
+/// lanes (x, y, z, 0), quaternions (w, x, y, z). Momentum and torque are scaled by h and h^2: a scaled I^-1 would be off by
+/// the same rounding at every step.
 class Turn {
  public:
-  Turn(const Vec3& inv_I, const Vec3& L_P, const Vec3& tau_P)
-      : inv_I_(inv_I),
-        gap_(inv_I.z() - inv_I.y(), inv_I.x() - inv_I.z(), inv_I.y() - inv_I.x()),
-        torque_(!tau_P.isZero(0.0)) {
-    set<0>(L_, L_P.x(), L_P.y(), L_P.z());
-    set<0>(tau_, tau_P.x(), tau_P.y(), tau_P.z());
-    set<0>(p_, 0.0, 0.0, 0.0);
-    pw_[0] = 1.0;
-    [this]<std::size_t... k>(std::index_sequence<k...>) {
-      (extend<k>(), ...);
+  Turn(const Vec3& inv_I, const Vec3& L_P, const Vec3& tau_P, double h)
+      : inv_I_{inv_I.x(), inv_I.y(), inv_I.z(), 0.0},
+        gap_{inv_I.z() - inv_I.y(), inv_I.x() - inv_I.z(), inv_I.y() - inv_I.x(), 0.0} {
+    const Lanes L = h * Lanes{L_P.x(), L_P.y(), L_P.z(), 0.0};
+    if (tau_P.isZero(0.0)) {
+      extend<false>(L, Lanes{}, std::make_index_sequence<kOrder>());
+    } else {
+      extend<true>(L, h * h * Lanes{tau_P.x(), tau_P.y(), tau_P.z(), 0.0},
+                   std::make_index_sequence<kOrder>());
     }
-    (std::make_index_sequence<kOrder>());
   }
 
-  /// The quaternion of the turn within h [s], unit up to the cut-off of the series.
-  Quat after(double h) const { return Quat(sum(pw_, h), sum(p_.x, h), sum(p_.y, h), sum(p_.z, h)); }
+  /// The quaternion of the turn, unit up to the cut-off of the series.
+  Quat whole() const { return Quat(sum_[0], sum_[1], sum_[2], sum_[3]); }
 
  private:
-  template <std::size_t k>
-  static void set(VectorSeries& series, double x, double y, double z) {
-    series.x[k] = x;
-    series.y[k] = y;
-    series.z[k] = z;
-  }
+  using Series = std::array<Lanes, kOrder>;
 
-  /// Coefficients k + 1 from those up to k.
+  static Lanes yzx(Lanes v) { return shuffled<1, 2, 0, 3>(v); }
+  static Lanes zxy(Lanes v) { return shuffled<2, 0, 1, 3>(v); }
+
+  /// Coefficient k of the product of two series; what the newest coefficients make comes last, since all else can be
+  /// summed before they are known. k is a template argument so that every loop unrolls.
   template <std::size_t k>
-  void extend() {
-    constexpr double inverse = 1.0 / (k + 1), half = 0.5 / (k + 1);
-    const auto& [Lx, Ly, Lz] = L_;
-    const auto& [wx, wy, wz] = w_;
-    const auto& [tx, ty, tz] = tau_;
-    const auto& [px, py, pz] = p_;
-    set<k>(w_, inv_I_.x() * Lx[k], inv_I_.y() * Ly[k], inv_I_.z() * Lz[k]);
-    // L x w has one product per component: (L x w)_x = L_y L_z (1/I_z - 1/I_y).
-    double dx = gap_.x() * product<k>(Ly, Lz), dy = gap_.y() * product<k>(Lz, Lx),
-           dz = gap_.z() * product<k>(Lx, Ly);
-    if (torque_) {
-      dx += tx[k], dy += ty[k], dz += tz[k];
-      set<k + 1>(tau_, inverse * (product<k>(ty, wz) - product<k>(tz, wy)),
-                 inverse * (product<k>(tz, wx) - product<k>(tx, wz)),
-                 inverse * (product<k>(tx, wy) - product<k>(ty, wx)));
+  static Lanes product(const Series& a, const Series& b) {
+    if constexpr (k == 0) {
+      return a[0] * b[0];
+    } else {
+      Lanes ends = a[0] * b[k] + a[k] * b[0];
+      if constexpr (k > 1) ends += inner<k>(a, b, std::make_index_sequence<k - 1>());
+      return ends;
     }
-    set<k + 1>(L_, inverse * dx, inverse * dy, inverse * dz);
-    pw_[k + 1] = -half * (product<k>(px, wx) + product<k>(py, wy) + product<k>(pz, wz));
-    set<k + 1>(p_, half * (product<k>(pw_, wx) + product<k>(py, wz) - product<k>(pz, wy)),
-               half * (product<k>(pw_, wy) + product<k>(pz, wx) - product<k>(px, wz)),
-               half * (product<k>(pw_, wz) + product<k>(px, wy) - product<k>(py, wx)));
+  }
+  template <std::size_t k, std::size_t... i>
+  static Lanes inner(const Series& a, const Series& b, std::index_sequence<i...>) {
+    return (... + (a[i + 1] * b[k - 1 - i]));
   }
 
-  static double sum(const Coefficients& a, double h) {
-    double value = a[kOrder];
-    for (int k = kOrder - 1; k >= 0; --k) value = a[k] + h * value;
-    return value;
+  template <bool with_torque, std::size_t... k>
+  void extend(Lanes L, Lanes tau, std::index_sequence<k...>) {
+    std::array<Lanes, kOrder + 1> p;
+    p[0] = Lanes{1.0, 0.0, 0.0, 0.0};
+    ((p[k + 1] = next<with_torque, k>(L, tau, p[k])), ...);
+    sum_ = p[kOrder];
+    for (std::size_t i = kOrder; i-- > 0;) sum_ += p[i];  // the smallest first
   }
 
-  Vec3 inv_I_, gap_;
-  bool torque_;
-  VectorSeries L_, w_, tau_, p_;
-  Coefficients pw_;
+  /// Coefficient k + 1 of p; L and tau become their coefficients k + 1.
+  template <bool with_torque, std::size_t k>
+  Lanes next(Lanes& L, Lanes& tau, Lanes p) {
+    constexpr double inverse = 1.0 / (k + 1), half = 0.5 / (k + 1);
+    const Lanes w = inv_I_ * L;
+    wx_[k] = shuffled<0, 0, 0, 0>(w);
+    wy_[k] = shuffled<1, 1, 1, 1>(w);
+    wz_[k] = shuffled<2, 2, 2, 2>(w);
+    // What w_x, w_y, w_z multiply in the product p (0; w).
+    p_x_[k] = shuffled<1, 0, 3, 2>(p) * Lanes{-1.0, 1.0, 1.0, -1.0};
+    p_y_[k] = shuffled<2, 3, 0, 1>(p) * Lanes{-1.0, -1.0, 1.0, 1.0};
+    p_z_[k] = shuffled<3, 2, 1, 0>(p) * Lanes{-1.0, 1.0, -1.0, 1.0};
+    // L x w has one product per component: (L x w)_x = L_y L_z (1/I_z - 1/I_y).
+    L_yzx_[k] = yzx(L);
+    L_zxy_[k] = zxy(L);
+    L = (inverse * gap_) * product<k>(L_yzx_, L_zxy_);
+    if constexpr (with_torque) {
+      L += inverse * tau;
+      w_yzx_[k] = yzx(w);
+      w_zxy_[k] = zxy(w);
+      tau_yzx_[k] = yzx(tau);
+      tau_zxy_[k] = zxy(tau);
+      tau = inverse * (product<k>(tau_yzx_, w_zxy_) - product<k>(tau_zxy_, w_yzx_));
+    }
+    return half * (product<k>(p_x_, wx_) + product<k>(p_y_, wy_) + product<k>(p_z_, wz_));
+  }
+
+  Lanes inv_I_, gap_, sum_;
+  Series wx_, wy_, wz_, p_x_, p_y_, p_z_, L_yzx_, L_zxy_;
+  Series w_yzx_, w_zxy_, tau_yzx_, tau_zxy_;
 };
 
 /// A ball whose axis stays: exact whatever the angle. A wandering axis adds a term of h^2 |w0 x w1| / 12 (Magnus), which
@@ -114,27 +119,31 @@ bool turns_about_fixed_axis(const Vec3& inv_I, const Vec3& w0, const Vec3& w1, d
   return ball && h * h * w0.cross(w1).norm() <= 1e-16 + 4e-16 * (h * h * w0.norm() * w1.norm());
 }
 
-/// q_WP after h [s]. The number of sub-steps follows from the speeds before each of them, with the momentum of now and
-/// of the end; while it turns, a free body's |w| changes by at most |w|^2 per second (the moments obey the triangle
-/// inequality).
+/// q_WP after h [s], unit up to rounding times the number of sub-steps. Their number follows from the speeds before each of
+/// them, with the momentum of now and of the end; while it turns, a free body's |w| changes by at most |w|^2 per second (the
+/// moments obey the triangle inequality).
 Quat turned(const MassProperties& mass, const VelocityPath& path, double h, Quat q) {
-  const Vec3 tau = (path.L1 - path.L0) / h;
+  const bool has_torque = path.L0 != path.L1;
+  const Vec3 tau = has_torque ? Vec3((path.L1 - path.L0) / h) : Vec3(Vec3::Zero());
   double t = 0.0;
-  for (int left = kMaxSubSteps; t < h; --left) {
-    const Vec3 L_P = q.conjugate() * Vec3(path.L0 + t * tau);
-    const Vec3 L1_P = q.conjugate() * path.L1;
+  for (int left = kMaxSubSteps;; --left) {
+    const Quat to_P = q.conjugate();
+    const Vec3 L_P = to_P * Vec3(path.L0 + t * tau);
     const Vec3 w_P = mass.inv_I.cwiseProduct(L_P);
-    const double angle = (h - t) * std::max(w_P.norm(), mass.inv_I.cwiseProduct(L1_P).norm());
-    const double wanted = std::min(std::ceil(angle / kAngle), static_cast<double>(left));
-    const double parts = std::max(wanted, 1.0);
-    const double step = (h - t) / parts;
-    const Quat turn = angle > kLargestSubTurn * parts
-                          ? exp_map(step * w_P)
-                          : Turn(mass.inv_I, L_P, q.conjugate() * tau).after(step);
-    q = normalized(q * turn);
-    t = parts == 1.0 ? h : t + step;
+    const Vec3 w1_P = has_torque ? Vec3(mass.inv_I.cwiseProduct(to_P * path.L1)) : w_P;
+    const double angle = (h - t) * std::sqrt(std::max(w_P.squaredNorm(), w1_P.squaredNorm()));
+    double parts = 1.0, step = h - t;
+    if (angle > kAngle && left > 1) {
+      parts = std::min(std::ceil(angle / kAngle), static_cast<double>(left));
+      step /= parts;
+    }
+    q = q * (angle > kLargestSubTurn * parts
+                 ? exp_map(step * w_P)
+                 : Turn(mass.inv_I, L_P, has_torque ? Vec3(to_P * tau) : tau, step).whole());
+    if (parts == 1.0) return q;
+    q = normalized(q);
+    t += step;
   }
-  return q;
 }
 
 }  // namespace
@@ -146,7 +155,9 @@ void integrate_taylor8(const MassProperties& mass, const VelocityPath& path, dou
   if (turns_about_fixed_axis(mass.inv_I, w0, w1, h)) {
     set_end_of_step(mass, path, exp_map((0.5 * h) * (w0 + w1)) * body.q, body);
   } else {
-    set_end_of_step(mass, path, turned(mass, path, h, body.q * mass.q_BP) * mass.q_BP.conjugate(), body);
+    const bool aligned = mass.q_BP.vec().isZero(0.0);
+    const Quat q_WP = turned(mass, path, h, aligned ? body.q : body.q * mass.q_BP);
+    set_end_of_step(mass, path, aligned ? q_WP : q_WP * mass.q_BP.conjugate(), body);
   }
 }
 

@@ -27,12 +27,6 @@ double sign(double x) {
   return std::signbit(x) ? -1.0 : 1.0;
 }
 
-/// cos and sin of half the angle whose cosine and sine are given; accurate for cosine >= 0, |angle| < pi.
-SinCos half_angle(double sine, double cosine) {
-  const double c = std::sqrt(0.5 * (1.0 + cosine));
-  return {0.5 * sine / c, c};
-}
-
 }  // namespace
 
 double Tumbling::compute_A(const Vec3& I, const Vec3& w) {
@@ -226,26 +220,29 @@ Tumbling::State Tumbling::at(double t) const {
   const double across2 = theta.T1 * theta.T1 + theta.T2 * theta.T2;
   const double across = std::sqrt(across2), N = 1.0 / std::sqrt(across2 + theta.T3 * theta.T3);
   const double inv_across = 1.0 / across;
+  const double X = 1.0 / std::sqrt(theta.re * theta.re + theta.im * theta.im);
   State state;
   state.L_hat = N * Vec3(theta.T2, theta.T1, theta.T3);
 
-  // Half the polar angles of L, then half the precession: no arc tangent.
-  const SinCos polar = half_angle(N * across, state.L_hat.z());
+  // Half the polar angles of L, then half the precession: no arc tangent. Half the angle of (c, s), c >= 0, is that of
+  // (1 + c, s), whose length sqrt(2 (1 + c)) is taken off at the end.
+  const SinCos polar{N * across, 1.0 + state.L_hat.z()};
   const double cos_phi = across > 0.0 ? theta.T2 * inv_across : 1.0;
   const double sin_phi = across > 0.0 ? theta.T1 * inv_across : 0.0;
-  SinCos phi = half_angle(sin_phi, std::abs(cos_phi));
+  SinCos phi{sin_phi, 1.0 + std::abs(cos_phi)};
+  const SinCos xi{theta.im * X, 1.0 + theta.re * X};
+  const double length = 1.0 / std::sqrt(8.0 * (polar.cos * phi.cos * xi.cos));
   if (cos_phi < 0.0) {
     const double j = sign(sin_phi);
     phi = {j * phi.cos, j * phi.sin};
   }
-  const double X = 1.0 / std::sqrt(theta.re * theta.re + theta.im * theta.im);
-  const SinCos xi = half_angle(theta.im * X, theta.re * X);
   const SinCos h = sincos(half_precession_ * t + theta.shift);
   const double c_psi = h.cos * xi.cos - h.sin * xi.sin, s_psi = h.sin * xi.cos + h.cos * xi.sin;
   const double even_c = c_psi * phi.cos, even_s = s_psi * phi.sin;
   const double odd_c = s_psi * phi.cos, odd_s = c_psi * phi.sin;
-  state.f = Quat(polar.cos * (even_c + even_s), polar.sin * (odd_c + odd_s), -polar.sin * (even_c - even_s),
-                 polar.cos * (odd_c - odd_s));
+  const double along = length * polar.cos, across_f = length * polar.sin;
+  state.f = Quat(along * (even_c + even_s), across_f * (odd_c + odd_s), across_f * (even_s - even_c),
+                 along * (odd_c - odd_s));
   return state;
 }
 

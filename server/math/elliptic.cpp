@@ -24,12 +24,11 @@ CarlsonIntegrals compute_carlson_integrals(double x, double y) {
   // Duplication halves the spread of the arguments until the series below have nothing left to add.
   constexpr double kSpread = 1.5e-3;
   double z = 1.0, sum = 0.0, f = 1.0;
-  const auto deviation = [](double mean, double u) { return (mean - u) / mean; };
   double mu = 0.2 * (x + y + 3.0 * z);
-  const auto spread = [&] {
-    return std::max({std::abs(deviation(mu, x)), std::abs(deviation(mu, y)), std::abs(deviation(mu, z))});
+  const auto is_spread = [&] {
+    return std::max({std::abs(mu - x), std::abs(mu - y), std::abs(mu - z)}) >= kSpread * mu;
   };
-  while (spread() >= kSpread) {
+  while (is_spread()) {
     const double rx = std::sqrt(x), ry = std::sqrt(y), rz = std::sqrt(z);
     const double lambda = rx * ry + rx * rz + ry * rz;
     sum += f / (rz * (z + lambda));
@@ -41,7 +40,7 @@ CarlsonIntegrals compute_carlson_integrals(double x, double y) {
   }
   CarlsonIntegrals result;
   {
-    const double X = deviation(mu, x), Y = deviation(mu, y), Z = deviation(mu, z);
+    const double inverse = 1.0 / mu, X = (mu - x) * inverse, Y = (mu - y) * inverse, Z = (mu - z) * inverse;
     const double a = X * Y, b = Z * Z, c = a - b, d = a - 6.0 * b, e = d + 2.0 * c;
     const double series = 1.0 + d * (-3.0 / 14.0 + d * (9.0 / 88.0) - Z * e * (9.0 / 52.0)) +
                           Z * (e * (1.0 / 6.0) + Z * (c * (-9.0 / 22.0) + Z * a * (3.0 / 26.0)));
@@ -49,7 +48,8 @@ CarlsonIntegrals compute_carlson_integrals(double x, double y) {
   }
   {
     const double mean = (x + y + z) / 3.0;
-    const double X = deviation(mean, x), Y = deviation(mean, y), Z = deviation(mean, z);
+    const double inverse = 1.0 / mean;
+    const double X = (mean - x) * inverse, Y = (mean - y) * inverse, Z = (mean - z) * inverse;
     const double E2 = X * Y - Z * Z, E3 = X * Y * Z;
     result.R_F = (1.0 + E2 * (-1.0 / 10.0 + E2 * (1.0 / 24.0 - E2 * (5.0 / 208.0)) + E3 * (E2 / 16.0)) +
                   E3 * (1.0 / 14.0 - E2 * (3.0 / 44.0) + E3 * (3.0 / 104.0))) /

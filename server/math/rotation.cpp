@@ -18,25 +18,23 @@ constexpr double kLn2Hi = 6.93147180369123816490e-01;
 constexpr double kLn2Lo = 1.90821492927058770002e-10;
 constexpr double kLog2E = 1.44269504088896338700;
 
-constexpr double kS[] = {-1.66666666666666324348e-01, 8.33333333332248946124e-03,
-                         -1.98412698298579493134e-04, 2.75573137070700676789e-06,
-                         -2.50507602534068634195e-08, 1.58969099521155010221e-10};
-constexpr double kC[] = {4.16666666666666019037e-02, -1.38888888888741095749e-03,
-                         2.48015872894767294178e-05, -2.75573143513906633035e-07,
-                         2.08757232129817482790e-09, -1.13596475577881948265e-11};
+/// Side by side: sine, cosine. Each lane has the bits that it would have alone.
+using Pair = double __attribute__((vector_size(2 * sizeof(double))));
+constexpr Pair kSeries[] = {{-1.66666666666666324348e-01, 4.16666666666666019037e-02},
+                            {8.33333333332248946124e-03, -1.38888888888741095749e-03},
+                            {-1.98412698298579493134e-04, 2.48015872894767294178e-05},
+                            {2.75573137070700676789e-06, -2.75573143513906633035e-07},
+                            {-2.50507602534068634195e-08, 2.08757232129817482790e-09},
+                            {1.58969099521155010221e-10, -1.13596475577881948265e-11}};
 
-double sin_reduced(double r) {
+/// For |r| <= pi/4.
+SinCos sincos_reduced(double r) {
   const double r2 = r * r;
-  const double p = kS[0] + r2 * (kS[1] + r2 * (kS[2] + r2 * (kS[3] + r2 * (kS[4] + r2 * kS[5]))));
-  return r + r * (r2 * p);
-}
-
-double cos_reduced(double r) {
-  const double r2 = r * r;
-  const double p = kC[0] + r2 * (kC[1] + r2 * (kC[2] + r2 * (kC[3] + r2 * (kC[4] + r2 * kC[5]))));
+  Pair p = kSeries[5];
+  for (int i = 4; i >= 0; --i) p = kSeries[i] + r2 * p;
   const double y = 0.5 * r2;
   const double w = 1.0 - y;
-  return w + (((1.0 - w) - y) + r2 * r2 * p);
+  return {r + r * (r2 * p[0]), w + (((1.0 - w) - y) + r2 * r2 * p[1])};
 }
 
 /// 1/first!, 1/(first + stride)!, ...
@@ -78,8 +76,7 @@ SinCos sincos(double x) {
   }
   const double k = std::nearbyint(x * kTwoOverPi);
   const double r = (x - k * kHalfPiHi) - k * kHalfPiLo;
-  const double s = sin_reduced(r);
-  const double c = cos_reduced(r);
+  const auto [s, c] = sincos_reduced(r);
   // By quadrant {s, c}, {c, -s}, {-s, -c}, {-c, s}; without branches, which no processor could predict.
   const auto quadrant = static_cast<std::uint64_t>(static_cast<std::int64_t>(k));
   const auto signed_by = [](double value, std::uint64_t bit) {

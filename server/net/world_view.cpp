@@ -43,19 +43,19 @@ void add_flag(const World& world, BodyId id, std::int8_t flag, WorldView& view) 
   body.flags = static_cast<std::int8_t>(body.flags | flag);
 }
 
+/// And the hash over them.
 void copy_bodies(const World& world, WorldView& view) {
   view.bodies.resize(world.body_capacity());
-  for (std::uint32_t slot = 0; slot < world.body_capacity(); ++slot) {
+  for (BodyView& body : view.bodies) body.exists = false;
+  view.state_hash = world.state_hash([&](std::uint32_t slot, const Motion& motion) {
     BodyView& body = view.bodies[slot];
-    body.exists = world.body(slot).exists;
-    if (!body.exists) continue;
-    const Motion& motion = world.motion(slot);
+    body.exists = true;
     body.generation = world.id(slot).generation;
     body.flags = body_flags(world, slot);
     body.values = {motion.x.x(), motion.x.y(), motion.x.z(), motion.q.w(), motion.q.x(),
                    motion.q.y(), motion.q.z(), motion.v.x(), motion.v.y(), motion.v.z(),
                    motion.w.x(), motion.w.y(), motion.w.z()};
-  }
+  });
 }
 
 void copy_watched(const World& world, const std::vector<BodyId>& watched, WorldView& view) {
@@ -102,7 +102,6 @@ std::shared_ptr<const Catalog> make_catalog(const World& world, std::int64_t epo
 void copy_world(const World& world, const ViewRequest& request, WorldView& view) {
   view.step = static_cast<std::int64_t>(world.step_count());
   view.time = world.time();
-  view.state_hash = world.state_hash();
   copy_bodies(world, view);
   for (const BodyId id : world.contained()) add_flag(world, id, state_t::FLAG_CONTAINED, view);
   copy_watched(world, request.watched, view);

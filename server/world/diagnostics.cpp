@@ -32,11 +32,17 @@ Conserved World::compute_conserved() const {
 }
 
 std::uint64_t World::state_hash() const {
+  return state_hash([](std::uint32_t, const Motion&) {});
+}
+
+std::uint64_t World::state_hash(const std::function<void(std::uint32_t, const Motion&)>& visit) const {
   Hash hash;
   hash.add(step_count_);
   for (std::uint32_t slot = 0; slot < body_capacity(); ++slot) {
-    if (!bodies_[slot].exists || bodies_[slot].type == BodyType::fixed) continue;
+    if (!bodies_[slot].exists) continue;
     const Motion motion = this->motion(slot);
+    visit(slot, motion);
+    if (bodies_[slot].type == BodyType::fixed) continue;
     hash.add(static_cast<std::uint64_t>(slot) << 32 | bodies_[slot].generation);
     hash.add(motion.x);
     hash.add(motion.q);

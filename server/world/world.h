@@ -108,6 +108,8 @@ class World {
   Conserved compute_conserved() const;
   /// Over every body's id, pose, velocity and rest flag, and the step count.
   std::uint64_t state_hash() const;
+  /// The same, and hands the motion of every body to `visit` on the way, so that a flight is evaluated once for both.
+  std::uint64_t state_hash(const std::function<void(std::uint32_t slot, const Motion& motion)>& visit) const;
   /// Bodies that were held at their last good state because a step made them non-finite, in order of occurrence.
   const std::vector<BodyId>& contained() const { return contained_; }
 

@@ -1,6 +1,8 @@
 """Every command and every script that the documents for users show does what they say: exit status 0."""
+import os
 import pathlib
 import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -55,6 +57,41 @@ def test_commands(page, tmp_path):
             assert done.returncode == 0, f"{page}: {line}\n{done.stdout}{done.stderr}"
             run += 1
         assert run > 0
+
+
+def examples_of(help_text):
+    """The commands in the help of a program."""
+    shown = help_text.partition("Examples:\n")[2].partition("\n\n")[0]
+    return [line.strip() for line in shown.splitlines()]
+
+
+def run_shell(line, folder):
+    done = subprocess.run(["bash", "-c", line], cwd=folder, check=False, timeout=60, capture_output=True, text=True,
+                          env=os.environ | {"PATH": f"{CLI.parent}:{SERVER.parent}:{os.environ['PATH']}"})
+    assert done.returncode == 0, f"{line}\n{done.stdout}{done.stderr}"
+    return done.stdout
+
+
+def test_examples_in_the_help_of_tumble(start, wire, tmp_path):
+    """Of every subcommand, in the order of the list."""
+    start(SCENES / "ball.sdf")
+    wire.next("STATE", 20.0)
+    subcommands = re.findall(r"^  (\w+)  ", run_shell("tumble --help", tmp_path).partition("Subcommands:")[2], re.M)
+    assert len(subcommands) == 17
+    shown = {name: examples_of(run_shell(f"tumble {name} --help", tmp_path)) for name in subcommands}
+    assert [name for name, lines in shown.items() if not lines] == ["pause", "resume", "reset"]
+    for name in sorted(subcommands, key=lambda name: (name == "remove", subcommands.index(name))):
+        for line in shown[name]:
+            run_shell(line, tmp_path)
+
+
+def test_examples_in_the_help_of_the_server(tmp_path):
+    """Those that run on are ended after a while, as a reader would."""
+    shutil.copy(SCENES / "ball.sdf", tmp_path / "scene.sdf")
+    lines = examples_of(run_shell("tumble-server --help", tmp_path))
+    assert len(lines) == 4
+    for line in lines:
+        run_shell(line if "--steps" in line else f"timeout --preserve-status 3 {line}", tmp_path)
 
 
 def test_recordings(tmp_path):

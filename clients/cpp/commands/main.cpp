@@ -24,6 +24,30 @@ void add_globals(CLI::App& app, Globals& globals) {
   app.add_flag("--json", globals.json, "Print JSON");
 }
 
+/// As the help of a subcommand shows them.
+struct Examples {
+  const char* subcommand;
+  const char* lines;
+};
+constexpr Examples kExamples[] = {
+    {"list", "  tumble list\n  tumble --json list\n"},
+    {"watch", "  tumble watch ball --count 5\n  tumble --json watch --count 1\n"},
+    {"push",
+     "  tumble push ball --force 0 0 50 --seconds 0.5\n"
+     "  tumble push ball --force 0 0 50 --seconds 0 --at 0.1 0 0 --frame body\n"},
+    {"torque", "  tumble torque ball --torque 0 0 2 --seconds 1\n"},
+    {"spawn", "  tumble spawn sphere --name late --size 0.3 --mass 2 --at 0 0 8\n"},
+    {"set", "  tumble set ball --at 0 0 8 --velocity 1 0 0\n"},
+    {"remove", "  tumble remove late\n"},
+    {"step", "  tumble pause && tumble step 240\n"},
+    {"snapshot", "  tumble snapshot before\n"},
+    {"restore", "  tumble restore before\n"},
+    {"contacts", "  tumble contacts on\n"},
+    {"plot", "  tumble plot ball\n"},
+    {"doctor", "  tumble doctor\n  tumble --json doctor --network-only\n"},
+    {"completion", "  source <(tumble completion)\n"},
+};
+
 /// CLI11 takes "-.5" for an option but knows "-0.5".
 std::vector<std::string> read_arguments(int argc, char** argv) {
   std::vector<std::string> arguments(argv + 1, argv + argc);
@@ -57,6 +81,10 @@ int read_and_run(int argc, char** argv) {
   add_globals(app, globals);
   for (const auto add : {add_list, add_watch, add_push, add_spawn, add_control, add_doctor, add_completion}) {
     add(app, globals, action);
+  }
+  for (const Examples& examples : kExamples) {
+    app.get_subcommand(examples.subcommand)
+        ->footer(fmt::format("Examples:\n{}\n{}", examples.lines, kFooter));
   }
   try {
     app.parse(read_arguments(argc, argv));

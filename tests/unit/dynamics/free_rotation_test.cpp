@@ -34,7 +34,7 @@ TEST(FreeRotation, EndsWhereTheExactSolutionDoes) {
       {kRod, 7e-14, 5e-13},              // 6.6e-15, 5.0e-14
       {kNearSymmetric, 8e-15, 3e-15},    // 7.2e-16, 2.2e-16
       {kNearSpin, 1e-14, 1e-15},         // 1.0e-15, 1.0e-23
-      {kSeparatrix, 2e-14, 1e-15},       // 1.5e-15, 6.4e-19
+      {kSeparatrix, 2e-14, 2e-14},       // 1.5e-15, 1.8e-15: the last place of |w|
   };
   for (const Bound& bound : bounds) {
     const RotationCase& c = bound.rotation;

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "dynamics/integrator.h"
-#include "math/lanes.h"
+#include "math/four.h"
 
 namespace tumble {
 namespace {
@@ -36,12 +36,11 @@ class Turn {
   Turn(const Vec3& inv_I, const Vec3& L_P, const Vec3& tau_P, double h)
       : inv_I_{inv_I.x(), inv_I.y(), inv_I.z(), 0.0},
         gap_{inv_I.z() - inv_I.y(), inv_I.x() - inv_I.z(), inv_I.y() - inv_I.x(), 0.0} {
-    const Lanes L = h * Lanes{L_P.x(), L_P.y(), L_P.z(), 0.0};
+    const Four L = h * Four{L_P.x(), L_P.y(), L_P.z(), 0.0};
     if (tau_P.isZero(0.0)) {
-      extend<false>(L, Lanes{}, std::make_index_sequence<kOrder>());
+      extend<false>(L, Four{}, std::make_index_sequence<kOrder>());
     } else {
-      extend<true>(L, h * h * Lanes{tau_P.x(), tau_P.y(), tau_P.z(), 0.0},
-                   std::make_index_sequence<kOrder>());
+      extend<true>(L, h * h * Four{tau_P.x(), tau_P.y(), tau_P.z(), 0.0}, std::make_index_sequence<kOrder>());
     }
   }
 
@@ -49,32 +48,32 @@ class Turn {
   Quat whole() const { return Quat(sum_[0], sum_[1], sum_[2], sum_[3]); }
 
  private:
-  using Series = std::array<Lanes, kOrder>;
+  using Series = std::array<Four, kOrder>;
 
-  static Lanes yzx(Lanes v) { return shuffled<1, 2, 0, 3>(v); }
-  static Lanes zxy(Lanes v) { return shuffled<2, 0, 1, 3>(v); }
+  static Four yzx(const Four& v) { return rotated_three<1>(v); }
+  static Four zxy(const Four& v) { return rotated_three<2>(v); }
 
   /// Coefficient k of the product of two series; what the newest coefficients make comes last, since all else can be
   /// summed before they are known. k is a template argument so that every loop unrolls.
   template <std::size_t k>
-  static Lanes product(const Series& a, const Series& b) {
+  static Four product(const Series& a, const Series& b) {
     if constexpr (k == 0) {
       return a[0] * b[0];
     } else {
-      Lanes ends = a[0] * b[k] + a[k] * b[0];
+      Four ends = a[0] * b[k] + a[k] * b[0];
       if constexpr (k > 1) ends += inner<k>(a, b, std::make_index_sequence<k - 1>());
       return ends;
     }
   }
   template <std::size_t k, std::size_t... i>
-  static Lanes inner(const Series& a, const Series& b, std::index_sequence<i...>) {
+  static Four inner(const Series& a, const Series& b, std::index_sequence<i...>) {
     return (... + (a[i + 1] * b[k - 1 - i]));
   }
 
   template <bool with_torque, std::size_t... k>
-  void extend(Lanes L, Lanes tau, std::index_sequence<k...>) {
-    std::array<Lanes, kOrder + 1> p;
-    p[0] = Lanes{1.0, 0.0, 0.0, 0.0};
+  void extend(Four L, Four tau, std::index_sequence<k...>) {
+    std::array<Four, kOrder + 1> p;
+    p[0] = Four{1.0, 0.0, 0.0, 0.0};
     ((p[k + 1] = next<with_torque, k>(L, tau, p[k])), ...);
     sum_ = p[kOrder];
     for (std::size_t i = kOrder; i-- > 0;) sum_ += p[i];  // the smallest first
@@ -82,16 +81,16 @@ class Turn {
 
   /// Coefficient k + 1 of p; L and tau become their coefficients k + 1.
   template <bool with_torque, std::size_t k>
-  Lanes next(Lanes& L, Lanes& tau, Lanes p) {
+  Four next(Four& L, Four& tau, Four p) {
     constexpr double inverse = 1.0 / (k + 1), half = 0.5 / (k + 1);
-    const Lanes w = inv_I_ * L;
+    const Four w = inv_I_ * L;
     wx_[k] = shuffled<0, 0, 0, 0>(w);
     wy_[k] = shuffled<1, 1, 1, 1>(w);
     wz_[k] = shuffled<2, 2, 2, 2>(w);
     // What w_x, w_y, w_z multiply in the product p (0; w).
-    p_x_[k] = shuffled<1, 0, 3, 2>(p) * Lanes{-1.0, 1.0, 1.0, -1.0};
-    p_y_[k] = shuffled<2, 3, 0, 1>(p) * Lanes{-1.0, -1.0, 1.0, 1.0};
-    p_z_[k] = shuffled<3, 2, 1, 0>(p) * Lanes{-1.0, 1.0, -1.0, 1.0};
+    p_x_[k] = shuffled<1, 0, 3, 2>(p) * Four{-1.0, 1.0, 1.0, -1.0};
+    p_y_[k] = shuffled<2, 3, 0, 1>(p) * Four{-1.0, -1.0, 1.0, 1.0};
+    p_z_[k] = shuffled<3, 2, 1, 0>(p) * Four{-1.0, 1.0, -1.0, 1.0};
     // L x w has one product per component: (L x w)_x = L_y L_z (1/I_z - 1/I_y).
     L_yzx_[k] = yzx(L);
     L_zxy_[k] = zxy(L);
@@ -107,7 +106,7 @@ class Turn {
     return half * (product<k>(p_x_, wx_) + product<k>(p_y_, wy_) + product<k>(p_z_, wz_));
   }
 
-  Lanes inv_I_, gap_, sum_;
+  Four inv_I_, gap_, sum_;
   Series wx_, wy_, wz_, p_x_, p_y_, p_z_, L_yzx_, L_zxy_;
   Series w_yzx_, w_zxy_, tau_yzx_, tau_zxy_;
 };

@@ -41,4 +41,10 @@ Four rotated_three(const Four& x) {
   return __builtin_shufflevector(x, x, by, (by + 1) % 3, (by + 2) % 3, 3);
 }
 
+/// Lane i of the result is lane `from_i` of `v`.
+template <int from_0, int from_1, int from_2, int from_3>
+Four shuffled(const Four& v) {
+  return __builtin_shufflevector(v, v, from_0, from_1, from_2, from_3);
+}
+
 }  // namespace tumble

@@ -37,18 +37,18 @@ double rotation_energy(const Motion& body) {
 
 // Bounds are about 10 times the errors measured, which stand beside them.
 TEST(Taylor8, EndsWhereTheExactSolutionDoes) {
-  EXPECT_LT(end_error(kGeneric, integrate_taylor8, 1.0 / 60), 1e-13);   // 9.3e-15
-  EXPECT_LT(end_error(kGeneric, integrate_taylor8, 1.0 / 240), 2e-13);  // 2.3e-14
-  EXPECT_LT(end_error(kPlate, integrate_taylor8, 1.0 / 60), 3e-13);     // 2.7e-14
-  EXPECT_LT(end_error(kPlate, integrate_taylor8, 1.0 / 240), 2e-13);    // 1.8e-14
-  EXPECT_LT(end_error(kTorque, integrate_taylor8, 1.0 / 60), 2e-13);    // 2.6e-14
+  EXPECT_LT(end_error(kGeneric, integrate_taylor8, 1.0 / 60), 1e-13);   // 1.1e-14
+  EXPECT_LT(end_error(kGeneric, integrate_taylor8, 1.0 / 240), 2e-13);  // 1.6e-14
+  EXPECT_LT(end_error(kPlate, integrate_taylor8, 1.0 / 60), 3e-13);     // 8.5e-14
+  EXPECT_LT(end_error(kPlate, integrate_taylor8, 1.0 / 240), 2e-13);    // 1.3e-13
+  EXPECT_LT(end_error(kTorque, integrate_taylor8, 1.0 / 60), 2e-13);    // 2.1e-14
   EXPECT_LT(end_error(kTorque, integrate_taylor8, 1.0 / 240), 2e-13);   // 2.4e-14
   // The rounding of each step, 1e-16, is amplified wherever the body turns over.
-  EXPECT_LT(end_error(kDzhanibekov, integrate_taylor8, 1.0 / 60), 3e-6);   // 3.0e-7
-  EXPECT_LT(end_error(kDzhanibekov, integrate_taylor8, 1.0 / 240), 4e-7);  // 1.3e-8
+  EXPECT_LT(end_error(kDzhanibekov, integrate_taylor8, 1.0 / 60), 3e-6);   // 3.1e-7
+  EXPECT_LT(end_error(kDzhanibekov, integrate_taylor8, 1.0 / 240), 4e-7);  // 2.2e-8
   // The rod's small moment amplifies the rounding of its momentum in body axes.
-  EXPECT_LT(end_error(kRod, integrate_taylor8, 1.0 / 60), 2e-7);   // 2.0e-8
-  EXPECT_LT(end_error(kRod, integrate_taylor8, 1.0 / 240), 8e-8);  // 7.5e-9
+  EXPECT_LT(end_error(kRod, integrate_taylor8, 1.0 / 60), 2e-7);   // 1.6e-8
+  EXPECT_LT(end_error(kRod, integrate_taylor8, 1.0 / 240), 8e-8);  // 6.3e-9
 }
 
 TEST(Taylor8, AngularVelocityAtTheEndIsTheExactOne) {

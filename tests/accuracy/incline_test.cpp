@@ -45,7 +45,7 @@ Vec3 direction(double heading) {
 
 constexpr double kHeadings[] = {0.0, 0.3, 0.7853981633974483, 1.1, 2.0, 4.5};
 constexpr double kSteps[] = {1.0 / 60.0, 1.0 / 240.0, 1e-3};
-constexpr double kBlockSpeed = 1e-11, kBlockWay = 1e-10;
+constexpr double kBlockSpeed = 1e-11, kBlockWay = 1e-10;  // [m/s], [m]
 const Box kBlock{Vec3(0.5, 0.5, 0.25)};
 
 TEST(Incline, ABlockSlidesByHalfGSinMinusMuCosTSquaredInAnyDirection) {

@@ -113,23 +113,21 @@ class CoreTruth {
   Real core_separation() const { return best_; }
   /// |n - the nearest of the axes that are best to within `tie` [m]|, times how well that axis is determined: the sine
   /// between its edges, or, of the axis through the closest pair, the distance of the cores as a share of `size`. Apart, the
-  /// separation is a concave function of the axis: between two that are best every other one is as good, where a corner
-  /// hangs over an edge by so little that the way past it is no longer.
+  /// separation is a concave function of the axis: between the way through the closest pair and another axis that is as good
+  /// all are, where a corner hangs over an edge by so little that the way past it is no longer.
   Real normal_error(const Vec3& n, Real tie, Real size) const {
     const Vec3L found = n.cast<Real>();
     Real least = 4;
     for (const Axis& axis : axes_) {
       if (axis.separation < best_ - tie) continue;
       least = std::min(least, (found - axis.n).norm() * weight(axis, size));
-      for (const Axis& other : axes_) {
-        if (!apart_ || &other == &axis || other.separation < best_ - tie) continue;
-        const Vec3L across = other.n - axis.n;
-        const Real share = std::clamp<Real>((found - axis.n).dot(across) / across.squaredNorm(), 0, 1);
-        const Vec3L between = (axis.n + share * across).normalized();
-        if (across.squaredNorm() > 0)
-          least =
-              std::min(least, (found - between).norm() * std::max(weight(axis, size), weight(other, size)));
-      }
+      const Axis& pair = axes_.back();
+      if (!apart_ || &pair == &axis || pair.separation < best_ - tie) continue;
+      const Vec3L across = pair.n - axis.n;
+      const Real share = std::clamp<Real>((found - axis.n).dot(across) / across.squaredNorm(), 0, 1);
+      const Vec3L between = (axis.n + share * across).normalized();
+      if (across.squaredNorm() > 0)
+        least = std::min(least, (found - between).norm() * std::max(weight(axis, size), weight(pair, size)));
     }
     return least;
   }

@@ -119,13 +119,9 @@ void add_measurements() {
       [](benchmark::State& s) { step_world(s, 10000, false, Integrator::closed_form); });
 }
 
+[[maybe_unused]] const bool kAdded = (add_measurements(), true);
+
 }  // namespace
 }  // namespace tumble
 
-int main(int argc, char** argv) {
-  tumble::add_measurements();
-  benchmark::Initialize(&argc, argv);
-  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
-  benchmark::RunSpecifiedBenchmarks();
-  benchmark::Shutdown();
-}
+BENCHMARK_MAIN();

@@ -62,7 +62,8 @@ void add_measurements() {
   for (const std::string_view demo : demo_names()) {
     const std::string name(demo);
     const Scene scene = read_sdf_text(std::string(demo_text(demo)), name, ".").scene;
-    for (const Solver solver : {Solver::course_impulse, Solver::pgs, Solver::soft_step}) {
+    for (const Solver solver : {Solver::course_impulse, Solver::pgs, Solver::nncg, Solver::soft_step,
+                                Solver::alm_newton, Solver::interior_point, Solver::exact}) {
       Scene changed = scene;
       changed.options.solver = solver;
       add_measurement(name + "/solver:" + solver_name(solver), changed);
@@ -76,13 +77,9 @@ void add_measurements() {
   }
 }
 
+[[maybe_unused]] const bool kAdded = (add_measurements(), true);
+
 }  // namespace
 }  // namespace tumble
 
-int main(int argc, char** argv) {
-  tumble::add_measurements();
-  benchmark::Initialize(&argc, argv);
-  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
-  benchmark::RunSpecifiedBenchmarks();
-  benchmark::Shutdown();
-}
+BENCHMARK_MAIN();

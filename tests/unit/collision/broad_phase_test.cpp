@@ -16,7 +16,7 @@ constexpr double kMargin = 0.05;
 /// Unit boxes flying through a cage and bouncing off its walls; every `fixed_every`-th one does not move.
 class Crowd {
  public:
-  Crowd(std::uint32_t count, double speed, unsigned seed) : speed_(speed), random_(seed) {
+  Crowd(std::uint32_t count, double speed, unsigned seed) : random_(seed) {
     for (std::uint32_t i = 0; i < count; ++i) {
       center_.push_back(random_vector(kCage));
       velocity_.push_back(random_vector(speed));
@@ -78,7 +78,6 @@ class Crowd {
     for (int k = 0; k < 3; ++k) v[k] = uniform(random_);
     return v;
   }
-  double speed_;
   std::mt19937 random_;
   std::vector<Vec3> center_, velocity_;
   std::vector<bool> moves_, present_;

@@ -38,7 +38,8 @@ class Attacker {
     m.count = below(3) == 0 ? static_cast<std::int64_t>(random_()) : static_cast<std::int64_t>(below(5));
     m.body = static_cast<std::int32_t>(below(12)) - 1;
     m.generation = static_cast<std::int32_t>(below(3));
-    m.name = std::string(below(80), static_cast<char>('!' + below(90)));
+    const char letter = static_cast<char>('!' + below(90));
+    m.name = std::string(below(80), letter);
     m.body_type = static_cast<std::int8_t>(below(4));
     m.shape_type = static_cast<std::int8_t>(below(12));
     for (double& x : m.size) x = number();

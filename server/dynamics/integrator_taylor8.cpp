@@ -94,7 +94,7 @@ class Turn {
     // L x w has one product per component: (L x w)_x = L_y L_z (1/I_z - 1/I_y).
     L_yzx_[k] = yzx(L);
     L_zxy_[k] = zxy(L);
-    L = (inverse * gap_) * product<k>(L_yzx_, L_zxy_);
+    L = inverse * (gap_ * product<k>(L_yzx_, L_zxy_));
     if constexpr (with_torque) {
       L += inverse * tau;
       w_yzx_[k] = yzx(w);

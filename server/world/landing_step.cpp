@@ -24,7 +24,7 @@ constexpr int kMostLooks = 8;
 
 bool World::advance_landing(std::size_t island, StepContext& rest) {
   const ContactProblem& problem = scratch_.problem;
-  if (!may_be_cut(rest, options_.landing_bodies)) return false;
+  if (!may_be_cut(rest, options_.landing_bodies) || meets_triangles()) return false;
   if (std::none_of(problem.contacts.begin(), problem.contacts.end(),
                    [&](const PointContact& c) { return is_open(c, rest) && c.lambda.x() > 0.0; }))
     return false;

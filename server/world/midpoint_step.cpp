@@ -44,7 +44,7 @@ bool World::suits_midpoint(const StepContext& part, const std::vector<Touch>& to
   // The others do not solve to rounding.
   constexpr Solver kExact[] = {Solver::automatic, Solver::exact, Solver::alm_newton, Solver::interior_point};
   if (std::find(std::begin(kExact), std::end(kExact), options_.solver) == std::end(kExact)) return false;
-  if (!may_be_cut(part, options_.midpoint_bodies) || part.h < kShortest ||
+  if (!may_be_cut(part, options_.midpoint_bodies) || part.h < kShortest || meets_triangles() ||
       options_.integrator == Integrator::course || options_.integrator == Integrator::semi_implicit_euler)
     return false;
   bool pressed = false, turns = false;

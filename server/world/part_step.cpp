@@ -33,6 +33,12 @@ bool World::may_be_cut(const StepContext& step, int most_bodies) const {
                       [this](std::uint32_t slot) { return slot != kWorld && takes_part(slot); });
 }
 
+bool World::meets_triangles() const {
+  return std::any_of(
+      scratch_.contact_source.begin(), scratch_.contact_source.end(),
+      [this](const ContactSource& source) { return contacts_.all()[source.contact].pair.part > 0; });
+}
+
 void World::solve_part(std::size_t island, const StepContext& part) {
   build_problem(island, part);
   ContactProblem& problem = scratch_.problem;

@@ -324,6 +324,8 @@ class World {
   // part_step.cpp: what steps in parts share.
   /// Of the island: no ties, no turning friction, no driven partner, at most so many movable bodies.
   bool may_be_cut(const StepContext& step, int most_bodies) const;
+  /// A point that one triangle of a surface leaves, another takes over: it is not found again by its name.
+  bool meets_triangles() const;
   double acceleration_at(const PointContact& contact) const;
   /// At the start of a part: apart, by more than forces and turning close within a step, or on the way to meet.
   bool is_open(const PointContact& contact, const StepContext& part) const;

@@ -14,7 +14,7 @@ namespace {
 
 using namespace test;
 
-constexpr double kSteps[] = {1.0 / 60.0, 1.0 / 240.0, 1e-3};
+constexpr double kLandingSteps[] = {1.0 / 60.0, 1.0 / 240.0, 1e-3};
 
 /// Of a fall of 1 m.
 const double kFall = std::sqrt(2.0 / kG), kLandingSpeed = std::sqrt(2.0 * kG);
@@ -48,7 +48,7 @@ double block_way(double v0, double friction) {
 
 TEST(Landing, ABlockThatLandsFlatSlidesOnAndStopsWhereItShould) {
   const double friction = 0.25, v0 = 3.0;
-  for (const double step : kSteps) {
+  for (const double step : kLandingSteps) {
     for (const double heading : {0.0, 0.9}) {
       const Vec3 along(std::cos(heading), std::sin(heading), 0);
       const Landing block = drop(Box{Vec3(0.5, 0.4, 0.25)}, 0.25, friction, v0 * along, 2.0, step);
@@ -66,7 +66,7 @@ TEST(Landing, ABallThatLandsSlidesAndThenRolls) {
   const double sliding = slip / (3.5 * friction * kG), v2 = v1 - friction * kG * sliding;
   const double way =
       v0 * kFall + v1 * sliding - 0.5 * friction * kG * sliding * sliding + v2 * (t - kFall - sliding);
-  for (const double step : kSteps) {
+  for (const double step : kLandingSteps) {
     const Landing ball = drop(Sphere{r}, r, friction, Vec3(v0, 0, 0), t, step);
     EXPECT_LE((ball.motion.x - Vec3(way, 0, r)).norm(), 1e-11) << step;      // 9e-15..1.7e-13
     EXPECT_LE(std::abs(ball.motion.v.x() - 5.0 / 7.0 * v0), 1e-11) << step;  // 1e-15..4e-14

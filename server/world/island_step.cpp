@@ -97,14 +97,11 @@ void World::build_problem(std::size_t island, const StepContext& step) {
     problem_body(islands.bodies[i], step.h);
   }
   scratch_.problem_movable = static_cast<std::uint32_t>(scratch_.problem.bodies.size());
+  for (const std::uint32_t contact : contacts_of_island(island)) add_contact_rows(contact, step.h);
   const auto contact_count = static_cast<std::uint32_t>(contacts_.all().size());
   for (std::uint32_t i = islands.edge_begin[island]; i < islands.edge_begin[island + 1]; ++i) {
     const std::uint32_t source = scratch_.edge_source[islands.edges[i]];
-    if (source < contact_count) {
-      add_contact_rows(source, step.h);
-    } else {
-      add_tie_rows(source - contact_count, step.h);
-    }
+    if (source >= contact_count) add_tie_rows(source - contact_count, step.h);
   }
   end_problem();
 }

@@ -24,7 +24,7 @@ constexpr int kMostLooks = 8;
 
 bool World::advance_landing(std::size_t island, StepContext& rest) {
   const ContactProblem& problem = scratch_.problem;
-  if (!may_be_cut(rest, options_.landing_bodies) || meets_triangles()) return false;
+  if (!may_be_cut(rest, options_.landing_bodies)) return false;
   if (std::none_of(problem.contacts.begin(), problem.contacts.end(),
                    [&](const PointContact& c) { return is_open(c, rest) && c.lambda.x() > 0.0; }))
     return false;
@@ -90,12 +90,8 @@ double World::landing_gap(std::size_t island, const std::vector<Touch>& held) {
   double least = kInfinity;
   for (const std::uint32_t index : contacts_of_island(island)) {
     const Manifold& manifold = contacts_.all()[index].manifold;
-    for (std::size_t i = 0; i < static_cast<std::size_t>(manifold.count); ++i) {
-      const ManifoldPoint& point = manifold.points[i];
-      const bool is_held = std::any_of(held.begin(), held.end(), [&](const Touch& touch) {
-        return touch.contact == index && touch.feature == point.feature;
-      });
-      if (!is_held) least = std::min(least, point.separation);
+    for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(manifold.count); ++i) {
+      if (find_touch(held, {index, i}) == nullptr) least = std::min(least, manifold.points[i].separation);
     }
   }
   return least;

@@ -44,7 +44,7 @@ bool World::suits_midpoint(const StepContext& part, const std::vector<Touch>& to
   // The others do not solve to rounding.
   constexpr Solver kExact[] = {Solver::automatic, Solver::exact, Solver::alm_newton, Solver::interior_point};
   if (std::find(std::begin(kExact), std::end(kExact), options_.solver) == std::end(kExact)) return false;
-  if (!may_be_cut(part, options_.midpoint_bodies) || part.h < kShortest || meets_triangles() ||
+  if (!may_be_cut(part, options_.midpoint_bodies) || part.h < kShortest ||
       options_.integrator == Integrator::course || options_.integrator == Integrator::semi_implicit_euler)
     return false;
   bool pressed = false, turns = false;
@@ -214,7 +214,7 @@ void World::build_mean_problem(std::size_t island, const StepContext& part,
   const double share = 0.5 * part.h / options_.time_step;
   for (std::size_t i = 0; i < problem.contacts.size(); ++i) {
     PointContact& c = problem.contacts[i];
-    const Touch* touch = find_touch(touches, i);
+    const Touch* touch = find_touch(touches, scratch_.contact_source[i]);
     if (touch != nullptr) {
       c.separation = touch->gap;
     } else {
@@ -232,7 +232,7 @@ bool World::has_turned(const std::vector<Touch>& touches) const {
   if (problem.contacts.size() != touches.size()) return true;
   for (std::size_t i = 0; i < problem.contacts.size(); ++i) {
     const PointContact& c = problem.contacts[i];
-    const Touch* touch = find_touch(touches, i);
+    const Touch* touch = find_touch(touches, scratch_.contact_source[i]);
     if (touch == nullptr || turned(c.n, touch->n)) return true;
     if (problem.bodies[c.a].inv_mass > 0.0 && turned(c.rA, touch->rA)) return true;
     if (problem.bodies[c.b].inv_mass > 0.0 && turned(c.rB, touch->rB)) return true;
@@ -289,7 +289,7 @@ bool World::solve_mean_problem(const StepContext& part, Midpoint& way) {
 /// Of b relative to a where the part ends, with the arms that those of start and middle lead to [m/s].
 Vec3 World::velocity_at_end(std::size_t row, const Midpoint& way, Vec3& n) const {
   const PointContact& c = scratch_.problem.contacts[row];
-  const Touch* touch = find_touch(way.touches, row);
+  const Touch* touch = find_touch(way.touches, scratch_.contact_source[row]);
   n = touch != nullptr ? Vec3((2.0 * c.n - touch->n).normalized()) : c.n;
   const auto of = [&](std::uint32_t body, const Vec3& r, const Vec3* r0) {
     if (body >= scratch_.problem_movable) {
@@ -370,7 +370,7 @@ bool World::is_smooth(const StepContext& part, Midpoint& way) const {
     if (now[i].open) return false;
     const PointContact& c = problem.contacts[i];
     if (c.friction == 0.0) continue;
-    const Touch* before = find_touch(way.touches, i);
+    const Touch* before = find_touch(way.touches, scratch_.contact_source[i]);
     const Touch& touch = before != nullptr ? *before : now[i];
     const Vec3 slide = touch.u0 - touch.n.dot(touch.u0) * touch.n;
     const double speed = std::sqrt(slide.squaredNorm());

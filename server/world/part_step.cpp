@@ -33,12 +33,6 @@ bool World::may_be_cut(const StepContext& step, int most_bodies) const {
                       [this](std::uint32_t slot) { return slot != kWorld && takes_part(slot); });
 }
 
-bool World::meets_triangles() const {
-  return std::any_of(
-      scratch_.contact_source.begin(), scratch_.contact_source.end(),
-      [this](const ContactSource& source) { return contacts_.all()[source.contact].pair.part > 0; });
-}
-
 void World::solve_part(std::size_t island, const StepContext& part) {
   build_problem(island, part);
   ContactProblem& problem = scratch_.problem;
@@ -86,13 +80,36 @@ Advance World::advance_until_cut(std::size_t island, StepContext& rest, bool may
 
 const std::vector<std::uint32_t>& World::contacts_of_island(std::size_t island) {
   const Islands& islands = scratch_.islands;
-  const auto contact_count = static_cast<std::uint32_t>(contacts_.all().size());
-  scratch_.island_contacts.clear();
+  const std::vector<Contact>& contacts = contacts_.all();
+  std::vector<std::uint32_t>& found = scratch_.island_contacts;
+  found.clear();
   for (std::uint32_t i = islands.edge_begin[island]; i < islands.edge_begin[island + 1]; ++i) {
     const std::uint32_t source = scratch_.edge_source[islands.edges[i]];
-    if (source < contact_count) scratch_.island_contacts.push_back(source);
+    if (source < contacts.size()) found.push_back(source);
   }
-  return scratch_.island_contacts;
+  const std::size_t touching = found.size();
+  for (std::size_t i = 0; i < touching; ++i) {
+    if (contacts[found[i]].pair.part > 0) add_other_triangles(found[i], touching);
+  }
+  return found;
+}
+
+/// Contacts are sorted by pairs, so those with the same surface stand side by side.
+void World::add_other_triangles(std::uint32_t index, std::size_t touching) {
+  const std::vector<Contact>& contacts = contacts_.all();
+  std::vector<std::uint32_t>& found = scratch_.island_contacts;
+  const auto is_same_pair = [&](std::uint32_t i) {
+    return contacts[i].pair.a == contacts[index].pair.a && contacts[i].pair.b == contacts[index].pair.b;
+  };
+  const auto is_known = [&](std::uint32_t i) {
+    return std::find(found.begin(), found.end(), i) != found.end();
+  };
+  if (found.size() > touching && is_same_pair(found.back())) return;  // by an earlier triangle
+  std::uint32_t i = index;
+  while (i > 0 && is_same_pair(i - 1)) --i;
+  for (; i < contacts.size() && is_same_pair(i); ++i) {
+    if (contacts[i].restitution == 0.0 && !contacts[i].fast && !is_known(i)) found.push_back(i);
+  }
 }
 
 void World::update_island_contacts(std::size_t island, const StepContext& part) {
@@ -155,13 +172,17 @@ std::vector<Touch> World::note_touches(const StepContext& part) const {
   return touches;
 }
 
-const Touch* World::find_touch(const std::vector<Touch>& touches, std::size_t row) const {
-  const ContactSource source = scratch_.contact_source[row];
+const Touch* World::find_touch(const std::vector<Touch>& touches, ContactSource source) const {
+  const auto pair = [this](std::uint32_t contact) { return contacts_.all()[contact].pair; };
+  const GeometryPair meant = pair(source.contact);
   const std::uint32_t feature = contacts_.all()[source.contact].manifold.points[source.point].feature;
-  const auto found = std::find_if(touches.begin(), touches.end(), [&](const Touch& touch) {
-    return touch.contact == source.contact && touch.feature == feature;
-  });
-  return found == touches.end() ? nullptr : &*found;
+  const Touch* found = nullptr;
+  for (const Touch& touch : touches) {
+    if (touch.feature != feature) continue;
+    if (touch.contact == source.contact) return &touch;
+    if (pair(touch.contact).a == meant.a && pair(touch.contact).b == meant.b) found = &touch;
+  }
+  return found;
 }
 
 void World::build_instant_problem(std::size_t island, const StepContext& part) {
@@ -177,7 +198,7 @@ void World::hold_touches(std::size_t island, const std::vector<Touch>& touches, 
   double worst = 0.0;
   for (std::size_t i = 0; i < problem.contacts.size(); ++i) {
     const PointContact& c = problem.contacts[i];
-    const Touch* touch = find_touch(touches, i);
+    const Touch* touch = find_touch(touches, scratch_.contact_source[i]);
     if (touch == nullptr || !touch->pressed) continue;
     const Vec3 u = relative_velocity(problem.bodies[c.a], problem.bodies[c.b], c.rA, c.rB);
     worst = std::max(worst, std::abs(c.n.dot(u)));

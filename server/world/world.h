@@ -324,8 +324,6 @@ class World {
   // part_step.cpp: what steps in parts share.
   /// Of the island: no ties, no turning friction, no driven partner, at most so many movable bodies.
   bool may_be_cut(const StepContext& step, int most_bodies) const;
-  /// A point that one triangle of a surface leaves, another takes over: it is not found again by its name.
-  bool meets_triangles() const;
   double acceleration_at(const PointContact& contact) const;
   /// At the start of a part: apart, by more than forces and turning close within a step, or on the way to meet.
   bool is_open(const PointContact& contact, const StepContext& part) const;
@@ -336,11 +334,14 @@ class World {
   /// solves for what is then left.
   Advance advance_until_cut(std::size_t island, StepContext& rest, bool may_cut);
   void update_island_contacts(std::size_t island, const StepContext& part);
+  /// That touch, and those with other triangles of the same surfaces, which points may go over to within the step.
   const std::vector<std::uint32_t>& contacts_of_island(std::size_t island);
+  void add_other_triangles(std::uint32_t index, std::size_t touching);
   void note_island(std::size_t island, IslandState& state);
   void restore_island(std::size_t island, const IslandState& state);
   std::vector<Touch> note_touches(const StepContext& part) const;
-  const Touch* find_touch(const std::vector<Touch>& touches, std::size_t row) const;
+  /// By its name, under which another triangle of a surface takes a point over. Null: not there.
+  const Touch* find_touch(const std::vector<Touch>& touches, ContactSource source) const;
   /// The island as it is now, without forces, as a blow or a correction of velocities meets it.
   void build_instant_problem(std::size_t island, const StepContext& part);
   /// Takes from the velocities what the points that are pressed would approach, part or, where they stick, slide with:

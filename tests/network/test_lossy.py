@@ -152,7 +152,7 @@ def test_a_flood_of_garbage_does_no_harm(lossless, start, what):
 
 
 def test_ten_thousand_commands_a_second(lossless, start):
-    """Sent blindly for 2 s: all of those that arrive are applied, none twice, and no step is given up for them."""
+    """20 000 sent blindly: all of those that arrive are applied, none twice, and no step is given up for them."""
     server = start_far(lossless, start, SCENES / "free.sdf")
     bus = lcm.LCM(CABLE_URL)
     with World(url=CABLE_URL, timeout=10.0) as world:
@@ -160,8 +160,8 @@ def test_ten_thousand_commands_a_second(lossless, start):
         command = force_command_t()
         command.client, command.body, command.generation = 99, ball.id, ball.generation
         sent, began = 0, time.monotonic()
-        while (elapsed := time.monotonic() - began) < 2.0:
-            while sent < elapsed * 10_000:
+        while sent < 20_000:
+            while sent < min(20_000, 10_000 * (time.monotonic() - began)):
                 sent += 1
                 command.sequence = sent
                 bus.publish("TUMBLE_FORCE", command.encode())
@@ -170,7 +170,6 @@ def test_ten_thousand_commands_a_second(lossless, start):
         before: stats_t = world.stats
         assert world.wait_for(lambda: world.stats.utime > before.utime, 2.0)
         stats = world.stats
-    assert sent > 15_000
     assert stats.commands_refused == 0
     assert stats.commands_applied + stats.commands_dropped >= 0.999 * sent, "the rest was counted"
     assert stats.commands_applied >= 0.9 * sent

@@ -113,7 +113,7 @@ def test_a_cut_log_is_read_to_its_last_step(recorded, tmp_path):
         resumed = run_server("--resume", path, "--steps", 10, "--fast")
         assert resumed.returncode == 0, resumed.stderr
         done_again = re.search(r"from the snapshot after step \d+ (\d+) steps", resumed.stderr)
-        assert int(done_again.group(1)) < 120, "no more than what the last snapshot lacks"
+        assert int(done_again.group(1)) <= 120, "no more than what the last snapshot lacks"
         again = replay(path)
         assert again.returncode == 0 and f"{steps + 10} steps" in again.stderr
 

@@ -72,7 +72,7 @@ def _wait_for(receiver: socket.socket, datagram: bytes, timeout: float) -> bool:
 
 
 def _group_and_port(url: str) -> Tuple[str, int]:
-    parts = urlsplit(url)
+    parts, default = urlsplit(url), urlsplit(DEFAULT_URL)
     try:
         group, port = parts.hostname or default.hostname, parts.port or default.port
         if not 224 <= socket.inet_aton(group)[0] <= 239:

@@ -40,13 +40,17 @@ bool turned(const Vec3& r, const Vec3& from) {
 
 }  // namespace
 
-bool World::suits_midpoint(const StepContext& part, const std::vector<Touch>& touches) const {
-  // The others do not solve to rounding.
-  constexpr Solver kExact[] = {Solver::automatic, Solver::exact, Solver::alm_newton, Solver::interior_point};
-  if (std::find(std::begin(kExact), std::end(kExact), options_.solver) == std::end(kExact)) return false;
+/// Asked first, since most islands of a crowded scene are too large.
+bool World::may_step_by_midpoint(const StepContext& part) const {
   if (!may_be_cut(part, options_.midpoint_bodies) || part.h < kShortest ||
       options_.integrator == Integrator::course || options_.integrator == Integrator::semi_implicit_euler)
     return false;
+  // The others do not solve to rounding.
+  constexpr Solver kExact[] = {Solver::automatic, Solver::exact, Solver::alm_newton, Solver::interior_point};
+  return std::find(std::begin(kExact), std::end(kExact), options_.solver) != std::end(kExact);
+}
+
+bool World::suits_midpoint(const StepContext& part, const std::vector<Touch>& touches) const {
   bool pressed = false, turns = false;
   for (std::size_t i = 0; i < touches.size(); ++i) {
     const Touch& touch = touches[i];
@@ -88,6 +92,7 @@ double World::length_of_part(const StepContext& rest) const {
 }
 
 Advance World::advance_midpoint(std::size_t island, StepContext& rest, bool may_cut) {
+  if (!may_step_by_midpoint(rest)) return Advance::none;
   Midpoint way;
   way.touches = note_touches(rest);
   if (!suits_midpoint(rest, way.touches)) return Advance::none;

@@ -367,6 +367,7 @@ class World {
   /// Moves the solved island through the rest of the step, or where it may be cut through a part of it, and solves for
   /// what is then left. None: it does not suit, and nothing has changed.
   Advance advance_midpoint(std::size_t island, StepContext& rest, bool may_cut);
+  bool may_step_by_midpoint(const StepContext& part) const;
   bool suits_midpoint(const StepContext& part, const std::vector<Touch>& touches) const;
   bool may_turn(const Touch& touch, const StepContext& part) const;
   double length_of_part(const StepContext& rest) const;

@@ -69,6 +69,14 @@ double touching_distance(const Shape& body, const Quat& q, const Vec3& d, const 
   return high;
 }
 
+/// Up to 1 cm within the solid, in any direction.
+Pose overlapping_pose(RandomPose& random, const Shape& body, const Shape& solid) {
+  const Quat q = random.rotation();
+  const Vec3 d = random.direction();
+  const double offset = random.uniform(-0.01, 0.0);
+  return {q, (touching_distance(body, q, d, solid) + offset) * d};
+}
+
 // The depth and the normal of the deepest point are those of the solid. Near a tie between two axes (the search prefers
 // faces to edges within 1e-3 of the size) the normal may be the other one, with nearly the same depth.
 TEST(CollideTriangle, ABoxOfTrianglesTouchesLikeTheBox) {
@@ -80,10 +88,7 @@ TEST(CollideTriangle, ABoxOfTrianglesTouchesLikeTheBox) {
       RandomPose random(31);
       int cases = 0, ties = 0;
       for (int i = 0; i < 150; ++i) {
-        const Quat q = random.rotation();
-        const Vec3 d = random.direction();
-        const double offset = random.uniform(-0.01, 0.0);
-        const Pose X{q, (touching_distance(body.shape, q, d, solid) + offset) * d};
+        const Pose X = overlapping_pose(random, body.shape, solid);
         std::vector<Touch> of_solid;
         append(query(body.shape, X, solid, Pose{}, 0.02), X, of_solid);
         const std::vector<Touch> of_mesh = touches_with(body.shape, X, mesh, 0.02);
@@ -124,10 +129,7 @@ TEST(CollideTriangle, RandomRidgesTouchLikeTheHullThatTheyBound) {
       const auto is_deep = [](const ConvexHull::Face& face) { return face.offset > 0.1; };
       if (!std::all_of(solid->faces.begin(), solid->faces.end(), is_deep)) continue;
       const TriangleMeshPointer mesh = mesh_of(*solid);
-      const Quat q = random.rotation();
-      const Vec3 d = random.direction();
-      const double offset = random.uniform(-0.01, 0.0);
-      const Pose X{q, (touching_distance(body.shape, q, d, solid) + offset) * d};
+      const Pose X = overlapping_pose(random, body.shape, solid);
       std::vector<Touch> of_solid;
       append(query(body.shape, X, solid, Pose{}, 0.02), X, of_solid);
       const std::vector<Touch> of_mesh = touches_with(body.shape, X, mesh, 0.02);

@@ -82,6 +82,16 @@ class Recording : public testing::Test {
     replay.run({}, stop);
     return replay;
   }
+  /// Appends to the log that was replayed until the simulation is at this step.
+  void go_on(Replay& replayed, std::int64_t until) const {
+    Recorder recorder(EventLogWriter(path_, replayed.log_size(), replayed.log_events()), replayed.head(),
+                      replayed.checksum());
+    while (replayed.simulation().now_step() < until) {
+      replayed.simulation().step();
+      recorder.end_step(replayed.simulation(), replayed.inbox(), 0);
+    }
+    recorder.flush();
+  }
   std::string read_log() {
     recorder_->flush();
     std::ifstream file(path_, std::ios::binary);
@@ -175,12 +185,7 @@ TEST_F(Recording, GoesOnAfterACutAtAnyByte) {
     cut.run({}, stop);
     EXPECT_FALSE(cut.difference());
     EXPECT_TRUE(!cut.damage() || cut.damage()->cut) << cut.damage()->what;
-    Recorder goes_on(EventLogWriter(path_, cut.log_size(), cut.log_events()), cut.head(), cut.checksum());
-    while (cut.simulation().now_step() < 8) {
-      cut.simulation().step();
-      goes_on.end_step(cut.simulation(), cut.inbox(), 0);
-    }
-    goes_on.flush();
+    go_on(cut, 8);
     Replay again(path_);
     again.run({}, stop);
     EXPECT_FALSE(again.difference() || again.damage()) << length;
@@ -225,13 +230,7 @@ TEST_F(Recording, KeepsAnswersAndWhatWaitedInSnapshots) {
   recorder_->note_command(make_push(2, moving_body()), 40, kSession, 0);
   step(2);
   Replay before = replay();
-  Recorder goes_on(EventLogWriter(path_, before.log_size(), before.log_events()), before.head(),
-                   before.checksum());
-  for (int i = 0; i < kSnapshotSteps; ++i) {
-    before.simulation().step();
-    goes_on.end_step(before.simulation(), before.inbox(), 0);
-  }
-  goes_on.flush();
+  go_on(before, before.simulation().now_step() + kSnapshotSteps);
   Replay again = resume();
   EXPECT_EQ(again.skipped_to(), 15);
   EXPECT_EQ(again.inbox().pending(), 1u);
@@ -294,12 +293,7 @@ TEST_F(Recording, GoesOnAfterACutWithinASnapshot) {
     EXPECT_EQ(cut.skipped_to(), kSnapshotSteps);
     EXPECT_EQ(cut.steps(), kSnapshotSteps);
     EXPECT_TRUE(cut.bad_snapshots().empty());
-    Recorder goes_on(EventLogWriter(path_, cut.log_size(), cut.log_events()), cut.head(), cut.checksum());
-    for (int i = 0; i < kSnapshotSteps; ++i) {
-      cut.simulation().step();
-      goes_on.end_step(cut.simulation(), cut.inbox(), 0);
-    }
-    goes_on.flush();
+    go_on(cut, cut.simulation().now_step() + kSnapshotSteps);
     Replay again(path_);
     again.run({}, stop);
     EXPECT_FALSE(again.difference() || again.damage()) << length;

@@ -47,6 +47,13 @@ void BestImpulses::drop() {
   restore_start();
 }
 
+void BestImpulses::go_back(const BestImpulses& earlier) {
+  contact_ = earlier.contact_;
+  row_ = earlier.row_;
+  turning_ = earlier.turning_;
+  residual_ = earlier.residual_;
+}
+
 void BestImpulses::keep() {
   for (std::size_t i = 0; i < contact_.size(); ++i) contact_[i] = problem_.contacts[i].lambda;
   for (std::size_t i = 0; i < row_.size(); ++i) row_[i] = problem_.rows[i].lambda;

@@ -18,6 +18,8 @@ class BestImpulses {
   /// that follow from them in the problem.
   double offer();
   double residual() const { return residual_; }
+  /// Back to what was known of the same problem earlier.
+  void go_back(const BestImpulses& earlier);
 
   /// Puts the best impulses back, with the velocities that follow from them, or with v*.
   void restore();

@@ -32,6 +32,20 @@ double bound_of(double gap, double h, const BoundSettings& settings) {
   return std::min(settings.push_speed, settings.push_fraction * std::max(0.0, -gap - settings.slop) / h);
 }
 
+/// Without a push. The points of two faces lie in a plane, and so must their gaps: four velocities that no motion of a body
+/// has leave the load to creep from one point to the next for ever.
+void set_bounds_by_deepest(ContactProblem& problem) {
+  const auto end = problem.contacts.end();
+  for (auto begin = problem.contacts.begin(); begin != end;) {
+    const auto next = std::find_if(begin, end, [&](const PointContact& c) {
+      return c.a != begin->a || c.b != begin->b || c.n != begin->n;
+    });
+    double deepest = 0.0;
+    for (auto c = begin; c != next; ++c) deepest = std::min(deepest, c->separation);
+    for (; begin != next; ++begin) begin->bound = (deepest - begin->separation) / problem.h;
+  }
+}
+
 double contact_residual(const ContactProblem& problem, const PointContact& c) {
   if (c.mass_n == 0.0) return 0.0;  // neither body can be moved
   const Vec3 u = relative_velocity(problem.bodies[c.a], problem.bodies[c.b], c.rA, c.rB);
@@ -122,6 +136,7 @@ void prepare(ContactProblem& problem, const BoundSettings& settings) {
     c.un0 = c.n.dot(relative_start_velocity(problem.bodies[c.a], problem.bodies[c.b], c.rA, c.rB));
     c.bound = bound_of(c.separation, problem.h, settings);
   }
+  if (settings.push_fraction == 0.0) set_bounds_by_deepest(problem);
   for (Turning& turning : problem.turnings) update_masses(problem, turning);
   for (ScalarRow& row : problem.rows) {
     const double k = inverse_mass_along(problem.bodies[row.a], row.rA, row.n, row.n) +
@@ -175,16 +190,18 @@ double compute_residual(const ContactProblem& problem) {
 ContactProblem::Drift choose_drift(const ContactProblem& problem) {
   constexpr double kSlack = 1e-8;  // [m] far below what can be seen, far above the rounding of a gap
   const auto stays_open = [&](std::uint32_t a, std::uint32_t b, const Vec3& n, const Vec3& rA, const Vec3& rB,
-                              double gap) {
+                              double gap, double allowed) {
     const SolverBody &A = problem.bodies[a], &B = problem.bodies[b];
     const Vec3 mean = 0.5 * (relative_start_velocity(A, B, rA, rB) + relative_velocity(A, B, rA, rB));
-    return gap + problem.h * n.dot(mean) >= std::min(gap, 0.0) - kSlack;
+    return gap + problem.h * n.dot(mean) >= std::min({gap, allowed, 0.0}) - kSlack;
   };
   for (const PointContact& c : problem.contacts) {
-    if (!stays_open(c.a, c.b, c.n, c.rA, c.rB, c.separation)) return ContactProblem::Drift::end;
+    const double allowed = c.separation + problem.h * c.bound;
+    if (!stays_open(c.a, c.b, c.n, c.rA, c.rB, c.separation, allowed)) return ContactProblem::Drift::end;
   }
   for (const ScalarRow& row : problem.rows) {
-    if (!row.is_soft() && !row.is_two_sided() && !stays_open(row.a, row.b, row.n, row.rA, row.rB, row.gap)) {
+    if (!row.is_soft() && !row.is_two_sided() &&
+        !stays_open(row.a, row.b, row.n, row.rA, row.rB, row.gap, 0.0)) {
       return ContactProblem::Drift::end;
     }
   }

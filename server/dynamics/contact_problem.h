@@ -64,10 +64,11 @@ struct ScalarRow {
   double extension = 0.0;  ///< [m] at the start of the step, soft rows.
   double gap =
       0.0;  ///< [m] way left against n before the row is taut, rigid rows; < 0 over-long; joint: distance.
-  double bound = 0.0;   ///< [m/s], rigid rows only.
-  double lower = 0.0;   ///< Smallest lambda: 0 or -infinity.
-  double lambda = 0.0;  ///< [N s]
-  double mass = 0.0;    ///< 1/k [kg]; set by `prepare`.
+  double bound = 0.0;    ///< [m/s], rigid rows only.
+  double closing = 0.0;  ///< [m/s] joint: the part of `bound` that takes the gap back.
+  double lower = 0.0;    ///< Smallest lambda: 0 or -infinity.
+  double lambda = 0.0;   ///< [N s]
+  double mass = 0.0;     ///< 1/k [kg]; set by `prepare`.
 
   bool is_soft() const { return softness < kInfinity; }
   bool is_two_sided() const { return lower < 0.0; }
@@ -111,7 +112,8 @@ Vec3 relative_velocity(const SolverBody& A, const SolverBody& B, const Vec3& rA,
 Vec3 relative_start_velocity(const SolverBody& A, const SolverBody& B, const Vec3& rA, const Vec3& rB);
 
 /// Fills the masses, un0 and the bounds: gap > 0: b = -gap/h (may close, not cross); gap <= 0: b = min(push_speed,
-/// push_fraction (-gap - slop)/h).
+/// push_fraction (-gap - slop)/h). With push_fraction 0 overlap.h removes what overlaps: b = (d - gap)/h then, d <= 0 the
+/// deepest gap of the contacts with the same bodies and normal, so that none gets deeper than that.
 struct BoundSettings {
   double slop;           ///< [m] overlap that is not pushed out.
   double push_fraction;  ///< Share of the overlap removed per step, 0..1.
@@ -136,7 +138,7 @@ void apply_stored_impulses(ContactProblem& problem);
 /// row would correct itself. NaN if anything is not finite.
 double compute_residual(const ContactProblem& problem);
 
-/// Average if with it every contact and rigid row keeps gap + h u_n >= min(gap, 0) - 1e-8 m, else end.
+/// Average if with it every contact and rigid row keeps gap + h u_n >= min(gap, gap + h b, 0) - 1e-8 m, else end.
 ContactProblem::Drift choose_drift(const ContactProblem& problem);
 
 }  // namespace tumble

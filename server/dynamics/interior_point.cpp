@@ -13,7 +13,7 @@ namespace tumble {
 namespace {
 
 constexpr int kMaxIterations = 40;  // a wall of 210 bodies needs 7, a mass ratio of 1e6 25
-constexpr int kMaxStalls = 10;
+constexpr int kMaxStalls = 20;
 constexpr double kLongStep = 0.3;  // takes so much of the defects along
 constexpr double kToBoundary = 0.99;
 /// Smaller coefficients are left to the sweeps that follow: dividing by them would drown the normal condition.

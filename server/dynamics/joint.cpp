@@ -6,7 +6,6 @@
 #include "math/rotation.h"
 
 namespace tumble {
-
 Joint make_ball_joint(const Vec3& pA, const Vec3& pB) {
   Joint joint;
   for (int k = 0; k < 3; ++k) joint.held[joint.rows++] = {pA, pB, Vec3::Unit(k)};
@@ -40,11 +39,13 @@ ScalarRow make_joint_row(const HeldPoint& held, std::uint32_t a, std::uint32_t b
   const Vec3 rA = row.rA, rB = row.rB;
   row.rA = exp_map(0.25 * h * (A.w0 + A.w)) * rA;
   row.rB = exp_map(0.25 * h * (B.w0 + B.w)) * rB;
-  row.gap = std::clamp(row.n.dot(B.x + rB - A.x - rA), -h * settings.push_speed, h * settings.push_speed);
+  row.gap = row.n.dot(B.x + rB - A.x - rA);
+  if (settings.push_fraction > 0.0)
+    row.closing = -std::clamp(row.gap / h, -settings.push_speed, settings.push_speed);
   // What the arms turn in half a step is taken back in the other half; a speed at the start that parts the points is not.
   const double turning = row.n.dot(relative_start_velocity(A, B, row.rA, row.rB)) -
                          row.n.dot(relative_start_velocity(A, B, rA, rB));
-  row.bound = -row.gap / h - turning;
+  row.bound = row.closing - turning;
   return row;
 }
 

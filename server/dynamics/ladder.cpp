@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "dynamics/alm_newton.h"
+#include "dynamics/cone_newton.h"
 #include "dynamics/interior_point.h"
 
 namespace tumble {
@@ -82,6 +83,10 @@ void Ladder::newton(int max_iterations) {
   report_.newton_steps += run_alm_newton(problem_, system(), wanted_, max_iterations, best_).iterations;
 }
 
+void Ladder::cone_newton(int max_iterations) {
+  report_.newton_steps += run_cone_newton(problem_, system(), wanted_, max_iterations, best_).iterations;
+}
+
 bool Ladder::interior_point(double residual) {
   report_.iterations += run_interior_point(problem_, system(), residual, best_).iterations;
   return best_.residual() < residual;
@@ -95,23 +100,17 @@ bool Ladder::is_plausible() const {
 
 SolverReport Ladder::finish() {
   best_.restore();
+  // What has no solution leaves a residual of the size of its bounds, far above these, or impulses without end.
   const bool plausible = is_plausible();
-  // What has no solution leaves a residual of the size of its bounds, far above these.
   if (!plausible || !(best_.residual() <= std::max(1e-3, 1e-2 * speed_))) {
-    if (plausible) {
-      best_.restore_start();
-    } else {
-      best_.drop();
-    }
-    const SolverReport soft = solve_soft_step(problem_, settings_);
-    report_.sweeps += soft.sweeps;
     report_.fallback = true;
     report_.accepted = false;
-    report_.residual = soft.residual;
-    if (!plausible || !(best_.residual() <= soft.residual)) return report_;
-    for (SolverBody& body : problem_.bodies) body.shift = body.turn = Vec3::Zero();
+    const BestImpulses found = best_;
+    report_.newton_steps += find_compromise(problem_, system(), best_).iterations;
+    if (plausible && found.residual() < 0.5 * best_.residual()) best_.go_back(found);
     best_.restore();
   }
+  report_.work = work() * (report_.newton_steps + report_.iterations);
   report_.residual = best_.residual();
   report_.exact = true;
   problem_.drift = choose_drift(problem_);

@@ -1,6 +1,6 @@
 // The rungs that the exact solvers climb, cheapest first: take the warm start as it is, sweep, Newton, interior point.
-// Each starts from the best impulses so far and only an improvement counts; what has no solution (a body wedged between
-// walls that overlap it) is recognised by its residual or its impulses and left to soft_step, whose push is bounded.
+// Each starts from the best impulses so far and only an improvement counts; what has no solution (a press
+// that closes on a body) is recognised by its residual or its impulses and gets the compromise of cone_newton.h.
 #pragma once
 
 #include <algorithm>
@@ -27,17 +27,22 @@ class Ladder {
   double start_speed() const;
   /// A factorization takes at most `limit` products of blocks. Asked before the first rung that factorizes.
   bool fits(std::uint64_t limit);
+  /// Of one factorization, in products of blocks. After `fits`.
+  double work() const { return pattern_ ? static_cast<double>(pattern_->products()) : 0.0; }
 
   void sweep(int max_sweeps);
   void newton(int max_iterations);
+  /// Newton on the cones, for heaps.
+  void cone_newton(int max_iterations);
   /// Until the residual is below `residual` [m/s]; false if it is not.
   bool interior_point(double residual);
 
-  /// Puts the best impulses into the problem, or soft_step's if these are better or the best are not plausible.
+  /// Puts the best impulses into the problem, or a compromise where there is no solution.
   SolverReport finish();
   /// Leaves the problem as it was given.
   void leave();
 
+  double residual() const { return best_.residual(); }
   double wanted() const { return wanted_; }
 
  private:

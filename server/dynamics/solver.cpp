@@ -23,6 +23,11 @@ SolveFunction solve_function(Solver solver) {
   return rival(kSolvers, solver).function;
 }
 
+bool solves_exactly(Solver solver) {
+  return solver == Solver::alm_newton || solver == Solver::interior_point || solver == Solver::exact ||
+         solver == Solver::automatic;
+}
+
 const char* solver_name(Solver solver) {
   return rival(kSolvers, solver).name;
 }

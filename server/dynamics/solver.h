@@ -32,15 +32,20 @@ struct SolverSettings {
   /// then rest. A wall of 210 boxes is within it, a heap of 1000 bodies is not.
   double exact_calm_factor = 30.0;
   double exact_calm_speed = 0.1;
+  /// automatic: what the factorizations of this island may take together, in the same products; where more is expected,
+  /// soft_step's solution is taken.
+  double work_left = kInfinity;
   Vec3 gravity = Vec3::Zero();  ///< [m/s^2]; the exact solvers tell implausible impulses by it.
 };
 
 struct SolverReport {
   int sweeps = 0;
-  int newton_steps = 0;   ///< Factorizations of Newton's method.
-  int iterations = 0;     ///< Factorizations of the interior point method.
-  bool exact = false;     ///< The result is one of the exact solvers.
-  bool fallback = false;  ///< exact found no trustworthy solution: soft_step's was taken.
+  int newton_steps = 0;  ///< Factorizations of Newton's method.
+  int iterations = 0;    ///< Factorizations of the interior point method.
+  double work = 0.0;     ///< Of all of them, in products of 6 x 6 blocks.
+  bool exact = false;    ///< The result is one of the exact solvers.
+  bool fallback =
+      false;  ///< exact found no trustworthy solution: what violates the conditions least was taken.
   double residual = 0.0;  ///< [m/s], by compute_residual on the result.
   bool accepted = false;  ///< The warm start was good as it was: nothing was solved.
 };
@@ -58,6 +63,9 @@ SolverReport solve_automatic(ContactProblem& problem, const SolverSettings& sett
 
 using SolveFunction = SolverReport (*)(ContactProblem&, const SolverSettings&);
 SolveFunction solve_function(Solver solver);
+
+/// Those of the law of contact to rounding: overlaps are removed apart from them (overlap.h), never by a velocity.
+bool solves_exactly(Solver solver);
 
 const char* solver_name(Solver solver);
 std::optional<Solver> solver_from_name(std::string_view name);

@@ -4,13 +4,19 @@
 #include "dynamics/ladder.h"
 
 namespace tumble {
+namespace {
+
+/// Factorizations that an island takes which is not near its solution: 7 (a wall) to 40 (a heap).
+constexpr double kExpected = 10.0;
+
+}  // namespace
 
 SolverReport solve_automatic(ContactProblem& problem, const SolverSettings& settings) {
   Ladder ladder(problem, settings);
   if (!ladder.solved()) {
     const bool calm = ladder.start_speed() < settings.exact_calm_speed;
     const double limit = settings.exact_work * (calm ? settings.exact_calm_factor : 1.0);
-    if (!ladder.fits(static_cast<std::uint64_t>(limit))) {
+    if (!ladder.fits(static_cast<std::uint64_t>(limit)) || kExpected * ladder.work() > settings.work_left) {
       ladder.leave();
       return solve_soft_step(problem, settings);
     }

@@ -70,6 +70,9 @@ class SoftStep {
   void move();
   void add_impulses();
   void store();
+  void store_way();
+  double power() const;
+  void take_gain_back(double power_before);
   double gap(const SweptContact& c, const ContactPath& path) const;
 
   ContactProblem& problem_;
@@ -157,8 +160,8 @@ void SoftStep::soften_rows(double share) {
       swept->bias = row.bias;
     } else if (given.is_two_sided()) {
       // With arms fixed at the middle of the step, what turns has the opposite speed at its start as at its end.
-      const double closing = -given.gap / problem_.h;
-      swept->bound = closing + (2.0 * share - 1.0) * (given.bound - closing);
+      const double closing = -std::clamp(given.gap / problem_.h, -kPushSpeed, kPushSpeed);
+      swept->bound = closing + (2.0 * share - 1.0) * (given.bound - given.closing);
     } else if (given.bound <= 0.0) {
       swept->bound = -std::max(0.0, -given.bound * problem_.h + path->moved) / h_;
     }
@@ -237,7 +240,13 @@ void SoftStep::store() {
   }
   for (std::size_t i = 0; i < rows_.size(); ++i) sweep_.rows[i].l = rows_[i].l;
   for (std::size_t i = 0; i < moments_.size(); ++i) sweep_.turnings[i].law.lambda = moments_[i];
+  const double before = power();
   update_impulses(sweep_, problem_);
+  store_way();
+  take_gain_back(before);
+}
+
+void SoftStep::store_way() {
   const double before = drift_ == ContactProblem::Drift::average ? 0.5 : 0.0, after = 1.0 - before;
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     SolverBody& body = problem_.bodies[i];
@@ -246,6 +255,40 @@ void SoftStep::store() {
     body.turn = bodies_[i].turned - problem_.h * (before * body.w0 + after * body.w);
   }
   problem_.drift = drift_;
+}
+
+/// Sum p . u of the contacts at the velocities that the problem has now [J].
+double SoftStep::power() const {
+  double sum = 0.0;
+  auto swept = contacts_.begin();
+  for (const PointContact& c : problem_.contacts) {
+    if (c.mass_n == 0.0) continue;
+    const Vec3 u = relative_velocity(problem_.bodies[c.a], problem_.bodies[c.b], c.rA, c.rB);
+    sum += in_world(c, Vec3(swept->l_n, swept->l_1, swept->l_2)).dot(u);
+    ++swept;
+  }
+  return sum;
+}
+
+/// What turns by a radian in a sub-step meets forces on arms that it has long left. Where the contacts would give energy,
+///   s a + s^2 (e - a)/2 > push,   a, e sums p . u before and after, s = 1,
+/// beyond what pushes overlaps apart, their impulses are shortened to the s that gives none.
+void SoftStep::take_gain_back(double power_before) {
+  constexpr double kNoise = 1e-3;  // of a and e: relaxed contacts end a little off
+  const double half = 0.5 * (power() - power_before);
+  double push = kNoise * (std::abs(power_before) + std::abs(half));
+  for (const PointContact& c : problem_.contacts)
+    push += c.lambda.x() * std::min(kPushSpeed, std::max(0.0, -c.separation) / problem_.h);
+  if (!(power_before + half > push) || !(half > 0.0)) return;
+  const double share =
+      (std::sqrt(power_before * power_before + 4.0 * half * push) - power_before) / (2.0 * half);
+  const double taken = 1.0 - std::min(1.0, share);
+  for (PointContact& c : problem_.contacts) {
+    const Vec3 back = -taken * c.lambda;
+    apply_impulse(problem_.bodies[c.a], problem_.bodies[c.b], c.rA, c.rB, in_world(c, back));
+    c.lambda += back;
+  }
+  for (SolverBody& body : problem_.bodies) body.shift = body.turn = Vec3::Zero();
 }
 
 void SoftStep::solve() {

@@ -67,7 +67,7 @@ VelocitySystem::VelocitySystem(const ContactProblem& problem, std::shared_ptr<co
     if (position_[i] == Coupling::kImmovable) continue;
     position_[i] = matrix_.pattern().position(position_[i]);
     const SolverBody& body = problem.bodies[i];
-    masses_[position_[i]] = {1.0 / body.inv_mass, body.inv_I_W.inverse()};
+    masses_[position_[i]] = {1.0 / body.inv_mass, body.inv_I_W.inverse(), body.inv_I_W};
   }
 }
 
@@ -129,6 +129,13 @@ Vec6 VelocitySystem::momentum(std::size_t position, const Vec6& v) const {
   Vec6 p;
   p << mass.mass * v.head<3>(), mass.I_W * v.tail<3>();
   return p;
+}
+
+Vec6 VelocitySystem::answer(std::size_t position, const Vec6& p) const {
+  const Mass& mass = masses_[position];
+  Vec6 v;
+  v << p.head<3>() / mass.mass, mass.inv_I_W * p.tail<3>();
+  return v;
 }
 
 Vec3 VelocitySystem::velocity(const Coupling& c, const std::vector<Vec6>& v) const {

@@ -34,6 +34,8 @@ class VelocitySystem {
   VelocitySystem(const ContactProblem& problem, std::shared_ptr<const BlockPattern> pattern);
 
   std::size_t size() const { return masses_.size(); }
+  /// Of a body of the problem that can move.
+  std::uint32_t position(std::size_t body) const { return position_[body]; }
   /// Of those contacts, then rows, that can be moved at all, in their order.
   Coupling make_coupling(const PointContact& c) const;
   Coupling make_coupling(const ScalarRow& row) const;
@@ -44,6 +46,8 @@ class VelocitySystem {
   void load_start_velocities(std::vector<Vec6>& v) const;
   /// M v of one body.
   Vec6 momentum(std::size_t position, const Vec6& v) const;
+  /// M^-1 p of one body.
+  Vec6 answer(std::size_t position, const Vec6& p) const;
   /// D (relative velocity), without the offset.
   Vec3 velocity(const Coupling& c, const std::vector<Vec6>& v) const;
   /// sum <- sum + J^T p.
@@ -60,7 +64,7 @@ class VelocitySystem {
  private:
   struct Mass {
     double mass;
-    Mat3 I_W;
+    Mat3 I_W, inv_I_W;
   };
   void place(std::uint32_t a, std::uint32_t b, const Vec3& rA, const Vec3& rB, Coupling& c) const;
 

@@ -40,6 +40,8 @@ void for_each_option(OptionsType& options, Visit&& visit) {
   visit("max_cuts", options.max_cuts);
   visit("midpoint_bodies", options.midpoint_bodies);
   visit("midpoint_turn", options.midpoint_turn);
+  visit("taut_parts", options.taut_parts);
+  visit("work_rate", options.work_rate);
   visit("warm_start", options.warm_start);
   visit("rest_residual", options.rest.residual);
   visit("rest_speed", options.rest.speed);

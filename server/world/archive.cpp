@@ -329,14 +329,14 @@ struct Archived<World> {
            motions, flight_state, free, way, awake_flag, pushed, paired, calm_for, rest_next,       //
            broad_phase, contacts, ties, jointed, pushes, due, aloft_count,                          //
            active_stale, awake, kinematic, active_contacts, resting_points, resting_penetration,    //
-           step_residual, step_push_work, counters, report, contained, scratch] = world;
+           work_saved, step_residual, step_push_work, counters, report, contained, scratch] = world;
     archive(options.time_step);  // the other options are the scene's
     archive(step_count, time_before, steps_before, model_epoch, body_count, dynamic_count);
     archive(bodies, masses, geometries, free_bodies, free_geometries, names);
     archive(motions, flight_state, way, awake_flag, pushed, paired, calm_for, rest_next);
     archive(broad_phase, contacts, ties, jointed, pushes, due, aloft_count);
     archive(active_stale, awake, kinematic, active_contacts, resting_points, resting_penetration);
-    archive(step_residual, step_push_work, report, contained);
+    archive(work_saved, step_residual, step_push_work, report, contained);
     archive(scratch.loaded);  // whose loads the next step takes off
     free.resize(bodies.size());
     for (std::size_t slot = 0; slot < free.size(); ++slot) {

@@ -24,6 +24,9 @@ struct Counters {
   std::uint64_t patterns_kept = 0, patterns_made = 0;  ///< Patterns of factorization found again, and made.
   std::uint64_t solver_fallbacks = 0;                  ///< Islands without a trustworthy exact solution.
   std::uint64_t slides_ended = 0;                      ///< Within a step, at times of their own.
+  std::uint64_t overlaps_removed = 0;  ///< Islands whose bodies were shifted apart at the end of their step.
+  std::uint64_t overlap_steps = 0;     ///< Factorizations for that.
+  std::uint64_t taut_parts = 0;        ///< Parts of steps of islands whose joints pull hard.
   std::uint64_t landings = 0;             ///< Contacts that closed without restitution, likewise.
   std::uint64_t cuts_capped = 0;          ///< Steps of islands that were cut as often as they may be.
   std::uint64_t islands_by_midpoint = 0;  ///< Parts of steps with the forces of their middle.

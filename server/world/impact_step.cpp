@@ -370,7 +370,7 @@ void World::continue_from(const Blow& blow, const StepContext& rest) {
   if (bound.empty()) return;
   scratch_.problem_movable = static_cast<std::uint32_t>(scratch_.problem.bodies.size());
   for (const std::uint32_t index : held) add_contact_rows(index, rest.h);
-  for (const std::uint32_t index : ties) add_tie_rows(index, rest.h);
+  for (const std::uint32_t index : ties) add_tie_rows(index, rest);
   end_problem();
   prepare(scratch_.problem, rest.bounds);
   solve_problem(rest);

@@ -5,6 +5,7 @@
 
 #include "dynamics/balance.h"
 #include "dynamics/impact.h"
+#include "dynamics/overlap.h"
 #include "world/world.h"
 
 namespace tumble {
@@ -12,6 +13,8 @@ namespace {
 
 /// [m/s, rad/s] slower islands are on their way to rest, which asks for less.
 constexpr double kMoving = 1e-3;
+/// [m + rad] a shift of overlaps that a rest may leave out. Tenfold what is taken for an overlap.
+constexpr double kShifted = 1e-9;
 
 }  // namespace
 
@@ -57,6 +60,7 @@ void World::advance_connected(std::size_t island, const StepContext& step) {
   if (may_be_cut(step, options_.midpoint_bodies) && island_speed(problem) > kMoving)
     rest.solver_settings.tolerance = std::min(step.solver_settings.tolerance, kSharp);
   solve_problem(rest);
+  if (is_taut(rest)) return advance_taut(island, step);
   int cuts = 0;
   while (!try_rest(scratch_.residual)) {
     const bool may_cut = cuts < options_.max_cuts;
@@ -70,7 +74,10 @@ void World::advance_connected(std::size_t island, const StepContext& step) {
 
 void World::solve_problem(const StepContext& step) {
   ContactProblem& problem = scratch_.problem;
-  const SolverReport solved = step.solve(problem, step.solver_settings);
+  SolverSettings settings = step.solver_settings;
+  if (options_.work_rate > 0.0) settings.work_left = work_saved_;
+  const SolverReport solved = step.solve(problem, settings);
+  work_saved_ -= solved.work;
   counters_.sweeps += static_cast<std::uint64_t>(solved.sweeps);
   counters_.solver_iterations += static_cast<std::uint64_t>(solved.iterations + solved.newton_steps);
   counters_.newton_steps += static_cast<std::uint64_t>(solved.newton_steps);
@@ -79,7 +86,20 @@ void World::solve_problem(const StepContext& step) {
   ++(solved.accepted ? counters_.islands_accepted : counters_.islands_solved);
   step_residual_ = std::max(step_residual_, solved.residual);
   scratch_.residual = solved.residual;
+  scratch_.shifted = 0.0;
+  if (solved.exact) shift_apart(step);
   store_impulses();
+}
+
+void World::shift_apart(const StepContext& step) {
+  OverlapSettings settings{.speed = options_.bounds.push_speed};
+  const SolverSettings& solver = step.solver_settings;
+  if (options_.solver == Solver::automatic)
+    settings.work = static_cast<std::uint64_t>(solver.exact_work * solver.exact_calm_factor);
+  const OverlapReport report = remove_overlaps(scratch_.problem, settings);
+  scratch_.shifted = report.largest;
+  counters_.overlaps_removed += report.factorizations > 0 ? 1 : 0;
+  counters_.overlap_steps += static_cast<std::uint64_t>(report.factorizations);
 }
 
 void World::bounce(ContactProblem& problem) {
@@ -101,7 +121,7 @@ void World::build_problem(std::size_t island, const StepContext& step) {
   const auto contact_count = static_cast<std::uint32_t>(contacts_.all().size());
   for (std::uint32_t i = islands.edge_begin[island]; i < islands.edge_begin[island + 1]; ++i) {
     const std::uint32_t source = scratch_.edge_source[islands.edges[i]];
-    if (source >= contact_count) add_tie_rows(source - contact_count, step.h);
+    if (source >= contact_count) add_tie_rows(source - contact_count, step);
   }
   end_problem();
 }
@@ -186,7 +206,8 @@ void World::add_turning(const PointContact& row, const Contact& contact, const V
   scratch_.problem.turnings.push_back(turning);
 }
 
-void World::add_tie_rows(std::uint32_t tie_index, double h) {
+void World::add_tie_rows(std::uint32_t tie_index, const StepContext& step) {
+  const double h = step.h;
   const Tie& tie = ties_[tie_index];
   ScalarRow row;
   row.a = problem_body(tie.a, h);
@@ -194,8 +215,10 @@ void World::add_tie_rows(std::uint32_t tie_index, double h) {
   const SolverBody& A = scratch_.problem.bodies[row.a];
   const SolverBody& B = scratch_.problem.bodies[row.b];
   if (const Joint* joint = std::get_if<Joint>(&tie.law)) {
+    // A velocity that closes gaps keeps those of calm joints right to second order, and shakes taut ones, which go in parts.
+    const BoundSettings& bounds = h < options_.time_step ? step.bounds : options_.bounds;
     for (std::uint32_t i = 0; i < joint->rows; ++i)
-      add_row(make_joint_row(joint->held[i], row.a, row.b, A, B, h, options_.bounds), tie_index, i);
+      add_row(make_joint_row(joint->held[i], row.a, row.b, A, B, h, bounds), tie_index, i);
     return;
   }
   row.rA = A.q * tie.pA;
@@ -238,7 +261,7 @@ bool World::try_rest(double residual) {
   const auto movable_end = begin + scratch_.problem_movable;
   double calm_for = calm_for_[*begin];
   for (auto slot = begin; slot != movable_end; ++slot) calm_for = std::min(calm_for, calm_for_[*slot]);
-  bool rests = check_rest(scratch_.problem, residual, options_.rest, calm_for);
+  bool rests = check_rest(scratch_.problem, residual, options_.rest, calm_for) && scratch_.shifted < kShifted;
   for (auto slot = begin; slot != movable_end; ++slot) {
     calm_for_[*slot] = calm_for;
     rests = rests && !pushed_[*slot];
@@ -269,10 +292,25 @@ void World::move_bodies(const StepContext& step) {
   const double share = mean ? gainless_share(step) : 0.0;
   for (const PointContact& c : scratch_.problem.contacts)
     step_push_work_ += c.lambda.x() * std::max(0.0, c.bound);
+  if (scratch_.shifted > 0.0) step_push_work_ += std::max(0.0, work_of_shifts());
   for (std::uint32_t i = 0; i < scratch_.problem_movable; ++i) {
     const SolverBody& solved = scratch_.problem.bodies[i];
     move_body(scratch_.problem_slot[i], velocity_path(i, share), solved.shift, solved.turn, step);
   }
+}
+
+double World::work_of_shifts() const {
+  double work = 0.0;
+  for (std::uint32_t i = 0; i < scratch_.problem_movable; ++i) {
+    const std::uint32_t slot = scratch_.problem_slot[i];
+    const SolverBody& body = scratch_.problem.bodies[i];
+    work -= masses_[slot].mass * acceleration_of(slot).dot(body.shift);
+    // L stays: w . L changes with the moments of inertia that it meets.
+    const Vec3 L = scratch_.after_forces[i].I_W * body.w;
+    const Vec3 turned = exp_map(Vec3(-body.turn)) * L;
+    work += 0.5 * (turned.dot(body.inv_I_W * turned) - L.dot(body.inv_I_W * L));
+  }
+  return work;
 }
 
 VelocityPath World::velocity_path(std::uint32_t i, double share) const {

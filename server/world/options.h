@@ -53,9 +53,17 @@ struct Options {
   int midpoint_bodies = 8;
   /// [rad] a body turns at most in a part of such a step; errors go with its square, cost with its inverse.
   double midpoint_turn = 0.05;
+  /// Most parts into which the step of an island is cut whose joints or ropes pull so hard that what they hold swings by more
+  /// than a radian in a step; uncut it would gain energy without bound. 1: never.
+  int taut_parts = 64;
   bool warm_start = true;  ///< Off: every solve starts from zero impulses.
   /// Off: patterns of factorization are made anew for every solve, with the same results.
   bool keep_patterns = true;
+
+  /// Work of exact solutions that the solver `automatic` may take a simulated second, in products of 6 x 6 blocks (some
+  /// 0.1 us each); what is not taken is saved up for a quarter of a second. What exceeds it is solved by soft_step. For a
+  /// server that has to keep pace; counted, never timed, so the same on every machine. 0: no limit.
+  double work_rate = 0.0;
 
   // Rest
   RestSettings rest;

@@ -53,9 +53,11 @@ void World::step(const std::function<void(Stage)>& stage_done) {
   step.impact_events = options_.impact_events && options_.solver != Solver::course_impulse &&
                        options_.integrator != Integrator::course &&
                        options_.integrator != Integrator::semi_implicit_euler;
+  if (solves_exactly(options_.solver)) step.bounds.push_fraction = 0.0;  // but by remove_overlaps
   if (options_.solver == Solver::pgs || options_.solver == Solver::nncg) {
     step.bounds.slop = std::max(step.bounds.slop, options_.sweep_slop);
   }
+  save_work();
   apply_pushes(step);
   stage_done(Stage::commands);
   update_pairs();
@@ -74,6 +76,12 @@ void World::step(const std::function<void(Stage)>& stage_done) {
   counters_.patterns_made = scratch_.patterns.made();
   update_report();
   stage_done(Stage::report);
+}
+
+void World::save_work() {
+  constexpr double kSavedFor = 0.25;  // [s]
+  work_saved_ =
+      std::min(work_saved_ + options_.time_step * options_.work_rate, kSavedFor * options_.work_rate);
 }
 
 void World::apply_pushes(const StepContext& step) {

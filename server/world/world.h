@@ -180,9 +180,12 @@ class World {
     std::vector<std::vector<std::uint32_t>> contacts_of;  // by slot; filled at the first impact of a step
     bool contacts_indexed = false;
     std::vector<std::pair<std::uint32_t, Motion>> held;  // slots that pushes would carry beyond all numbers
+    std::vector<double> opened;                          // by contact of a taut island [m]
+    std::vector<double> swing_square;                    // by body of the problem [1/s^2]
     double residual = 0.0;                               // [m/s] of the problem's solution
     IslandState part_start, landing_start;               // to go back to from a trial
     std::vector<std::uint32_t> island_contacts;
+    double shifted = 0.0;               // [m + rad] longest way by which it takes its overlaps back
     double impulse_share = 1.0;         // of a whole step's impulses that the problem's are
     std::uint32_t problem_movable = 0;  // the first bodies of the problem; the rest are immovable partners
   };
@@ -225,6 +228,7 @@ class World {
   void wake_slot(std::uint32_t slot);
 
   // step.cpp: the stages, in order.
+  void save_work();
   void apply_pushes(const StepContext& step);
   /// Takes the load off bodies that it would make non-finite, so that they don't take others with them.
   void contain_overloaded(const StepContext& step);
@@ -299,10 +303,12 @@ class World {
   void begin_problem(double h);
   void end_problem();
   void solve_problem(const StepContext& step);
+  /// What overlaps at the start of the step, after its velocities are solved.
+  void shift_apart(const StepContext& step);
   std::uint32_t problem_body(std::uint32_t slot, double h);
   void add_contact_rows(std::uint32_t contact_index, double h);
   void add_turning(const PointContact& row, const Contact& contact, const Vec3& moment);
-  void add_tie_rows(std::uint32_t tie_index, double h);
+  void add_tie_rows(std::uint32_t tie_index, const StepContext& step);
   void add_row(ScalarRow row, std::uint32_t tie_index, std::uint32_t index);
   void store_impulses();
   bool try_rest(double residual);
@@ -311,6 +317,8 @@ class World {
   /// Share of the mean velocity with which the bodies of the problem may drift, 0..1.
   double gainless_share(const StepContext& step) const;
   double turning_gain(double share, const StepContext& step) const;
+  /// Of the shifts that take overlaps back [J].
+  double work_of_shifts() const;
   /// Of forces that are the same at every orientation, and of gravity.
   Vec3 acceleration_of(std::uint32_t slot) const;
   /// Moves the body along the path, or notes that it will be.
@@ -347,6 +355,13 @@ class World {
   /// Takes from the velocities what the points that are pressed would approach, part or, where they stick, slide with:
   /// rounding, and what their arms turned since they were solved.
   void hold_touches(std::size_t island, const std::vector<Touch>& touches, const StepContext& part);
+  // taut_step.cpp: islands whose joints pull hard, in parts of the step.
+  double swing_phase();
+  /// The solved island would swing too far in one step.
+  bool is_taut(const StepContext& step);
+  void advance_taut(std::size_t island, const StepContext& step);
+  void solve_taut_part(std::size_t island, const StepContext& part);
+  void note_opening();
 
   // slide_step.cpp: slides that end within the step.
   bool may_end_slides(const StepContext& step) const;
@@ -460,6 +475,7 @@ class World {
   std::vector<std::uint32_t> active_contacts_;  // with an awake or moving body
   std::uint32_t resting_points_ = 0;
   double resting_penetration_ = 0.0;
+  double work_saved_ = 0.0;      // of options_.work_rate, in products of blocks; < 0: overdrawn
   double step_residual_ = 0.0;   // [m/s] largest of the step's islands
   double step_push_work_ = 0.0;  // [J] of all of them
 

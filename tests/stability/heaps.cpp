@@ -3,6 +3,7 @@
 
 #include "scene/sdf.h"
 #include "stability/case.h"
+#include "support/heap_scenes.h"
 #include "support/impact_scenes.h"
 
 namespace tumble::stability {
@@ -54,6 +55,12 @@ void heap_of_all(Trial& trial) {
   expect_heap(trial, trial.extent(3.0, 20.0));
 }
 
+/// 30 bodies, or 1000, in a bin.
+void heap_in_bin(Trial& trial, bool mixed) {
+  trial.begin(heap(trial.options(), trial.extent(30, 1000), trial.extent(3, 8), mixed));
+  expect_heap(trial, trial.extent(8.0, 30.0));
+}
+
 void nothing_lost(Trial& trial) {
   Scene scene = read_sdf(std::string(TUMBLE_SCENES_DIR) + "/pile.sdf").scene;
   const Options own = scene.options;
@@ -71,6 +78,7 @@ void nothing_lost(Trial& trial) {
 }  // namespace
 
 std::vector<Case> heap_cases() {
+  const auto in_bin = [](bool mixed) { return [mixed](Trial& trial) { heap_in_bin(trial, mixed); }; };
   return {
       {"heap_boxes", "A heap of dropped boxes: at rest, penetration <= 1 mm, no creep in 10 min", nobody(),
        heap_of_boxes, false, true},
@@ -80,6 +88,10 @@ std::vector<Case> heap_cases() {
        heap_of_all,
        false,
        true},
+      {"bin_boxes", "Boxes dropped into a bin: at rest, penetration <= 1 mm, no creep", nobody(),
+       in_bin(false), false, true},
+      {"bin_mixed", "Mixed shapes dropped into a bin: at rest, penetration <= 1 mm, no creep", nobody(),
+       in_bin(true), false, true},
       {"heap_kept", "The pile of 1000 mixed shapes loses nobody through the ground", sturdy(1.0 / 240.0),
        nothing_lost, false, true},
   };

@@ -128,7 +128,7 @@ std::vector<Case> jam_cases() {
        precise(), box_in_wedge},
       {"painleve", "Painleve's rod, mu = 1 to 10: no gain of energy by 1e-3, no sinking in",
        sturdy(1.0 / 240.0), painleve},
-      {"press", "A press that asks for the impossible lets the cube go where it found it", nobody(), press},
+      {"press", "A press that asks for the impossible lets the cube go where it found it", precise(), press},
       {"vice", "Three cubes between two jaws come free at rest", precise(), vice},
   };
 }

@@ -1,0 +1,33 @@
+// A limit of work on exact solutions: counted, not timed, and what exceeds it is solved by sub-steps.
+#include <gtest/gtest.h>
+
+#include "support/heap_scenes.h"
+
+namespace tumble {
+namespace {
+
+using namespace test;
+
+World heap_after(double seconds, double work_rate) {
+  Options options;
+  options.work_rate = work_rate;
+  World world = heap(options, 30, 3, false);
+  while (world.time() < seconds) world.step();
+  return world;
+}
+
+TEST(WorkRate, LimitsExactSolutionsAndSavesUpForLater) {
+  const World unlimited = heap_after(0.75, 0.0), limited = heap_after(0.75, 1e4), none = heap_after(0.75, 1.0);
+  EXPECT_LT(limited.counters().solver_iterations, unlimited.counters().solver_iterations / 2);
+  EXPECT_GT(limited.counters().solver_iterations, 0u);
+  EXPECT_LT(none.counters().solver_iterations, limited.counters().solver_iterations);
+  EXPECT_EQ(limited.counters().non_finite_contained, 0u);
+}
+
+TEST(WorkRate, IsTheSameEveryTime) {
+  const World once = heap_after(0.5, 1e4), again = heap_after(0.5, 1e4);
+  EXPECT_EQ(largest_displacement(once, again), 0.0);
+}
+
+}  // namespace
+}  // namespace tumble

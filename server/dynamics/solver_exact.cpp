@@ -10,7 +10,7 @@ constexpr int kPolishSteps = 12;
 constexpr int kConeSteps = 25;  // heaps of 130 bodies: from 1e-4 to 1e-9..5e-7 m/s
 constexpr int kPolishSweeps = 10;
 /// [m/s] near enough for Newton: below it the interior point of sliding contacts stalls (1e-7 to 1e-3).
-constexpr double kNear = 1e-4;
+constexpr double kNearEnough = 1e-4;
 /// [m/s] what a heap may be left with: it can rest on it.
 constexpr double kFair = 1e-6;
 
@@ -20,7 +20,7 @@ SolverReport finish_exactly(Ladder& ladder, const SolverSettings& settings) {
   if (!ladder.solved() && ladder.is_small()) ladder.sweep(settings.max_sweeps);
   if (!ladder.solved()) ladder.newton(kWarmSteps);
   if (!ladder.solved()) {
-    const bool near = ladder.interior_point(kNear);
+    const bool near = ladder.interior_point(kNearEnough);
     ladder.newton(kPolishSteps);
     if (near && !ladder.solved()) {
       ladder.cone_newton(kConeSteps);

@@ -77,18 +77,22 @@ void World::solve_problem(const StepContext& step) {
   SolverSettings settings = step.solver_settings;
   if (options_.work_rate > 0.0) settings.work_left = work_saved_;
   const SolverReport solved = step.solve(problem, settings);
-  work_saved_ -= solved.work;
-  counters_.sweeps += static_cast<std::uint64_t>(solved.sweeps);
-  counters_.solver_iterations += static_cast<std::uint64_t>(solved.iterations + solved.newton_steps);
-  counters_.newton_steps += static_cast<std::uint64_t>(solved.newton_steps);
-  counters_.islands_exact += solved.exact && !solved.accepted ? 1 : 0;
-  counters_.solver_fallbacks += solved.fallback ? 1 : 0;
-  ++(solved.accepted ? counters_.islands_accepted : counters_.islands_solved);
+  count_solution(solved);
   step_residual_ = std::max(step_residual_, solved.residual);
   scratch_.residual = solved.residual;
   scratch_.shifted = 0.0;
   if (solved.exact) shift_apart(step);
   store_impulses();
+}
+
+void World::count_solution(const SolverReport& report) {
+  work_saved_ -= report.work;
+  counters_.sweeps += static_cast<std::uint64_t>(report.sweeps);
+  counters_.solver_iterations += static_cast<std::uint64_t>(report.iterations + report.newton_steps);
+  counters_.newton_steps += static_cast<std::uint64_t>(report.newton_steps);
+  counters_.islands_exact += report.exact && !report.accepted ? 1 : 0;
+  counters_.solver_fallbacks += report.fallback ? 1 : 0;
+  ++(report.accepted ? counters_.islands_accepted : counters_.islands_solved);
 }
 
 void World::shift_apart(const StepContext& step) {

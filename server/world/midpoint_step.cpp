@@ -8,7 +8,6 @@
 // end of a slide cuts the part; a contact that closes is not smooth, and left to landing_step.cpp. World frame.
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 
 #include "world/world.h"
 
@@ -42,12 +41,9 @@ bool turned(const Vec3& r, const Vec3& from) {
 
 /// Asked first, since most islands of a crowded scene are too large.
 bool World::may_step_by_midpoint(const StepContext& part) const {
-  if (!may_be_cut(part, options_.midpoint_bodies) || part.h < kShortest ||
-      options_.integrator == Integrator::course || options_.integrator == Integrator::semi_implicit_euler)
-    return false;
-  // The others do not solve to rounding.
-  constexpr Solver kExact[] = {Solver::automatic, Solver::exact, Solver::alm_newton, Solver::interior_point};
-  return std::find(std::begin(kExact), std::end(kExact), options_.solver) != std::end(kExact);
+  return may_be_cut(part, options_.midpoint_bodies) && part.h >= kShortest &&
+         options_.integrator != Integrator::course &&
+         options_.integrator != Integrator::semi_implicit_euler && solves_exactly(options_.solver);
 }
 
 bool World::suits_midpoint(const StepContext& part, const std::vector<Touch>& touches) const {
@@ -261,10 +257,7 @@ bool World::solve_mean_problem(const StepContext& part, Midpoint& way) {
     problem.bodies = free;
     for (std::uint32_t i = 0; i < scratch_.problem_movable; ++i) problem.bodies[i].w += balance[i];
     const SolverReport report = part.solve(problem, settings);
-    ++counters_.islands_solved;
-    counters_.sweeps += static_cast<std::uint64_t>(report.sweeps);
-    counters_.solver_iterations += static_cast<std::uint64_t>(report.iterations + report.newton_steps);
-    counters_.newton_steps += static_cast<std::uint64_t>(report.newton_steps);
+    count_solution(report);
     bool gainless = false, settled = false;
     if (report.exact) {
       double work = 0.0, load = 0.0;

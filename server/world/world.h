@@ -303,6 +303,7 @@ class World {
   void begin_problem(double h);
   void end_problem();
   void solve_problem(const StepContext& step);
+  void count_solution(const SolverReport& report);
   /// What overlaps at the start of the step, after its velocities are solved.
   void shift_apart(const StepContext& step);
   std::uint32_t problem_body(std::uint32_t slot, double h);

@@ -296,25 +296,31 @@ void World::move_bodies(const StepContext& step) {
   const double share = mean ? gainless_share(step) : 0.0;
   for (const PointContact& c : scratch_.problem.contacts)
     step_push_work_ += c.lambda.x() * std::max(0.0, c.bound);
-  if (scratch_.shifted > 0.0) step_push_work_ += std::max(0.0, work_of_shifts());
+  if (scratch_.shifted > 0.0) count_shifts();
   for (std::uint32_t i = 0; i < scratch_.problem_movable; ++i) {
     const SolverBody& solved = scratch_.problem.bodies[i];
     move_body(scratch_.problem_slot[i], velocity_path(i, share), solved.shift, solved.turn, step);
   }
 }
 
-double World::work_of_shifts() const {
+void World::count_shifts() {
   double work = 0.0;
   for (std::uint32_t i = 0; i < scratch_.problem_movable; ++i) {
-    const std::uint32_t slot = scratch_.problem_slot[i];
     const SolverBody& body = scratch_.problem.bodies[i];
-    work -= masses_[slot].mass * acceleration_of(slot).dot(body.shift);
-    // L stays: w . L changes with the moments of inertia that it meets.
-    const Vec3 L = scratch_.after_forces[i].I_W * body.w;
-    const Vec3 turned = exp_map(Vec3(-body.turn)) * L;
-    work += 0.5 * (turned.dot(body.inv_I_W * turned) - L.dot(body.inv_I_W * L));
+    const std::uint32_t slot = scratch_.problem_slot[i];
+    work +=
+        work_of_shift(slot, motions_[slot].q, scratch_.after_forces[i].I_W * body.w, body.shift, body.turn);
   }
-  return work;
+  step_push_work_ += std::max(0.0, work);
+}
+
+double World::work_of_shift(std::uint32_t slot, const Quat& q, const Vec3& L, const Vec3& shift,
+                            const Vec3& turn) const {
+  const MassProperties& mass = masses_[slot];
+  const Quat turned = normalized(exp_map(turn) * q);
+  // L stays: w . L changes with the moments of inertia that it meets.
+  return 0.5 * L.dot(angular_velocity(mass, turned, L) - angular_velocity(mass, q, L)) -
+         mass.mass * acceleration_of(slot).dot(shift);
 }
 
 VelocityPath World::velocity_path(std::uint32_t i, double share) const {

@@ -156,14 +156,17 @@ bool World::shorten_to_end_of_slide(std::size_t island, StepContext& part, Midpo
 }
 
 void World::finish_midpoint(std::size_t island, const StepContext& part, const Midpoint& way) {
+  double shift_work = 0.0;
   for (std::uint32_t i = 0; i < scratch_.problem_movable; ++i) {
     const std::uint32_t slot = scratch_.problem_slot[i];
     const double share = part.h / way.h;
     Motion& motion = motions_[slot];
     motion = way.ends[i];
-    motion.x += share * way.shifts[i];
-    if (!way.turns[i].isZero(0.0)) {
-      motion.q = normalized(exp_map(share * way.turns[i]) * motion.q);
+    const Vec3 shift = share * way.shifts[i], turn = share * way.turns[i];
+    shift_work += work_of_shift(slot, motion.q, motion.L, shift, turn);
+    motion.x += shift;
+    if (!turn.isZero(0.0)) {
+      motion.q = normalized(exp_map(turn) * motion.q);
       motion.w = angular_velocity(masses_[slot], motion.q, motion.L);
     }
     if (!is_finite(motion)) contain(slot, scratch_.part_start.motions[i]);
@@ -171,7 +174,7 @@ void World::finish_midpoint(std::size_t island, const StepContext& part, const M
   ++counters_.islands_by_midpoint;
   counters_.slides_ended += way.ends_slide;
   scratch_.impulse_share = part.h / options_.time_step;
-  step_push_work_ += way.push_work;
+  step_push_work_ += way.push_work + std::max(0.0, shift_work);
   for (PointContact& c : scratch_.problem.contacts) c.lambda *= 2.0;  // of the whole part
   store_impulses();
   std::vector<Touch> touches = note_touches(part);

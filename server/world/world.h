@@ -318,8 +318,11 @@ class World {
   /// Share of the mean velocity with which the bodies of the problem may drift, 0..1.
   double gainless_share(const StepContext& step) const;
   double turning_gain(double share, const StepContext& step) const;
-  /// Of the shifts that take overlaps back [J].
-  double work_of_shifts() const;
+  /// Adds what the shifts that take overlaps back give to `push_work`.
+  void count_shifts();
+  /// [J] of one that meets the body at q_WB with L about its centre of mass.
+  double work_of_shift(std::uint32_t slot, const Quat& q, const Vec3& L, const Vec3& shift,
+                       const Vec3& turn) const;
   /// Of forces that are the same at every orientation, and of gravity.
   Vec3 acceleration_of(std::uint32_t slot) const;
   /// Moves the body along the path, or notes that it will be.

@@ -94,8 +94,10 @@ class TriangleQuery {
       const std::size_t top = t_.top(-f);
       const double separation = f.dot(t_.corner[top]) - core_.faces[i].offset;
       if (separation > enough_) return false;
-      if (separation <= best_.separation + preference_.face || !t_.corner_allows(top, -f)) continue;
-      best_ = {.kind = TriangleMeeting::Kind::body_face,
+      if (separation <= best_.separation + preference_.face) continue;
+      const bool is_own = t_.corner_allows(top, -f);
+      if (!is_own && !t_.corner_yields(top, -f)) continue;
+      best_ = {.kind = is_own ? TriangleMeeting::Kind::body_face : TriangleMeeting::Kind::neighbour,
                .separation = separation,
                .c = -f,
                .body = i,
@@ -218,11 +220,11 @@ class TriangleQuery {
     const double length = across.norm();
     if (!(length > 0.0)) return;
     for (const Vec3& c : {Vec3(across / length), Vec3(across / -length)}) {
-      if (c.dot(t_.normal) < -PlacedTriangle::kAlong) continue;
       // Any one point of the body bounds the separation from above.
       if (c.dot(low - t_.corner[k]) <= best_.separation + preference_.edge) continue;
       const double separation = lowest(c) - c.dot(t_.corner[k]);
-      if (separation <= best_.separation + preference_.edge || !t_.corner_allows(k, c)) continue;
+      if (separation <= best_.separation + preference_.edge) continue;
+      if (!t_.corner_allows(k, c) && !t_.corner_yields(k, c)) continue;
       best_ = {.kind = TriangleMeeting::Kind::neighbour, .separation = separation, .c = c, .edge = k};
     }
   }

@@ -137,7 +137,8 @@ WayOut turn_round_corner(const Shape& a, const PlacedTriangle& t, std::size_t k)
       const double length = across.norm();
       for (const double sign : {1.0, -1.0}) {
         const Vec3 c = across * (sign / length);
-        if (length > 0.0 && spanned < kRays && t.corner_allows(k, c)) rays[spanned++] = c;
+        if (length > 0.0 && spanned < kRays && (t.corner_allows(k, c) || t.corner_yields(k, c)))
+          rays[spanned++] = c;
       }
     }
   }
@@ -195,6 +196,7 @@ Manifold collide_triangle_hull(const Shape& a, const PlacedTriangle& t, double m
     if (t.bend[k] == Bend::convex && same_direction(c, t.beyond_normal[k])) return {};
   }
   if (allows(t, c)) return met;
+  if (t.corner_yields(t.top(c), c)) return {};
   // The shortest way out of the flat triangle is none out of the surface.
   const WayOut way = find_way_out(a, t);
   if (way.separation > margin || way.kind == WayOut::Kind::neighbour) return {};

@@ -42,9 +42,16 @@ struct PlacedTriangle : SurfaceTriangle {
     return bend[k] == Bend::open ? c.dot(normal) >= 0.0 : stays_below(beyond[k], corner[k], c);
   }
   /// Is c (unit) within the cone of corner k, in which the surface is furthest out there?
-  bool corner_allows(std::size_t k, const Vec3& c) const {
-    return c.dot(normal) >= -kAlong && stays_below(corner[next(k)], corner[k], c) &&
-           stays_below(corner[previous(k)], corner[k], c) && surface.is_top(vertex[k], R_AB.transpose() * c);
+  bool corner_allows(std::size_t k, const Vec3& c) const { return c.dot(normal) >= -kAlong && is_top(k, c); }
+  /// Is c (unit) within the cone of corner k, a convex peak, but behind this triangle? Then it belongs to others there.
+  bool corner_yields(std::size_t k, const Vec3& c) const {
+    return c.dot(normal) < -kAlong && bend[k] == Bend::convex && bend[previous(k)] == Bend::convex &&
+           is_top(k, c);
+  }
+
+  bool is_top(std::size_t k, const Vec3& c) const {
+    return stays_below(corner[next(k)], corner[k], c) && stays_below(corner[previous(k)], corner[k], c) &&
+           surface.is_top(vertex[k], R_AB.transpose() * c);
   }
 
   /// Sine by which a direction may point into the triangle's plane.

@@ -1,5 +1,6 @@
-// The table of the narrow phase's errors against ground truth, as Markdown. `contacts_accuracy [SHARE [CLASS]]`: SHARE of
-// the full number of poses, 1 by default, which takes hours where hulls have 200 vertices; only of classes of that name.
+// The table of the narrow phase's errors against ground truth, as Markdown. `contacts_accuracy [SHARE [NAME]]`: SHARE of
+// the full number of poses, 1 by default, which takes hours where hulls have 200 vertices; only of classes or pairs of that
+// name.
 #include <cstdio>
 #include <cstdlib>
 
@@ -12,7 +13,7 @@ int main(int argc, char** argv) {
   std::puts("|---|---|---|---|---|---|---|");
   int wrong = 0;
   for (const ContactClass& c : contact_classes()) {
-    if (argc > 2 && c.name != argv[2]) continue;
+    if (argc > 2 && c.name != argv[2] && c.pairs != argv[2]) continue;
     const ContactFigures f = run_class(c, std::max(1, static_cast<int>(c.queries * share)));
     std::printf("| %s | %s | %d | %d | %d | %.1e | %.1e |\n", c.pairs.c_str(), c.name.c_str(), f.queries,
                 f.contacts, f.wrong(), f.depth, f.normal);

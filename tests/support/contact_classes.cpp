@@ -54,11 +54,10 @@ PlacedPair aligned_stack(RandomPose& random) {
           {Quat::Identity(), p + Vec3(0, 0, 2.0 * box.half_extents.z() - depth)}};
 }
 
-/// Two roofs, each an edge of its box turned by about 45 degrees, across each other.
-PlacedPair edge_on_edge(RandomPose& random) {
+/// Two roofs, each an edge of its box turned by about 45 degrees, the ridges turned against each other by yaw [rad].
+PlacedPair edge_on_edge(RandomPose& random, double yaw) {
   const Box a = random_box(random), b = random_box(random);
-  const double roll_a = random.uniform(0.5, 1.0), roll_b = random.uniform(0.5, 1.0),
-               yaw = random.uniform(0.4, 2.7);
+  const double roll_a = random.uniform(0.5, 1.0), roll_b = random.uniform(0.5, 1.0);
   const double depth = random.log_uniform(1e-6, 1e-2);
   const Quat q_A = turn(Vec3::UnitX(), roll_a), q_B = turn(Vec3::UnitZ(), yaw) * turn(Vec3::UnitX(), roll_b);
   const Vec3 roof = q_A * Vec3(0, a.half_extents.y(), a.half_extents.z());
@@ -272,7 +271,8 @@ void add_boxes(std::vector<ContactClass>& classes) {
   add("face-face, tilt 1e-6", [](RandomPose& r) { return face_on_face(r, 1e-6); });
   add("face-face, tilt 1e-3", [](RandomPose& r) { return face_on_face(r, 1e-3); });
   add("aligned stack", aligned_stack);
-  add("edge-edge", edge_on_edge);
+  add("edge-edge", [](RandomPose& r) { return edge_on_edge(r, r.uniform(0.4, 2.7)); });
+  add("nearly parallel edges", [](RandomPose& r) { return edge_on_edge(r, r.log_uniform(1e-12, 1e-2)); });
   add("vertex-face", [](RandomPose& r) { return vertex_on_face(r, 3.0, 1e-2); });
   add("1:1000", [](RandomPose& r) { return vertex_on_face(r, 1000.0, 1e-2); });
   add("millimetres", [](RandomPose& r) { return face_on_face(r, 1e-3, 1e-3); });

@@ -53,9 +53,10 @@ inline void judge(const PlacedPair& pair, const Manifold& m, const CoreTruth& tr
   ++figures.queries;
   // The axis of a closest pair is known to the rounding of its points over their distance, and a foot on a face to what
   // its corners lie beside one plane.
-  figures.bad_truth +=
-      std::abs(truth.duality_gap()) >
+  const Real rounding =
       (1e-17L * size + truth.unevenness()) * (1 + size / std::max<Real>(1e-15L, truth.core_separation()));
+  // A hundredth of what is judged by it will do in any case: far apart, slivers round more than other shapes.
+  figures.bad_truth += std::abs(truth.duality_gap()) > std::max<Real>(rounding, 1e-2L * round_off);
   if (m.count == 0) {
     figures.missed += separation < pair.margin - round_off;
     return;

@@ -1,11 +1,14 @@
-// No query of the narrow phase takes memory from the heap, cold or warm.
+// No query of two shapes takes memory from the heap: contacts, cold or warm, casts and distances.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
 #include <new>
 
 #include "allocation_counter.h"
+#include "collision/distance.h"
 #include "collision/narrow_phase.h"
+#include "collision/ray_cast.h"
+#include "collision/shape_cast.h"
 #include "sample_hulls.h"
 #include "support/surface_meshes.h"
 
@@ -19,7 +22,8 @@ std::uint64_t allocations = 0;
   if (void* memory = std::malloc(size)) return memory;
   throw std::bad_alloc();
 }
-[[gnu::noinline]] void* operator new(std::size_t size, const std::nothrow_t&) noexcept {  // std::stable_sort's
+[[gnu::noinline]] void* operator new(std::size_t size,
+                                     const std::nothrow_t&) noexcept {  // std::stable_sort's
   ++allocations;
   return std::malloc(size);
 }
@@ -62,6 +66,33 @@ TEST(Allocation, NoQueryAllocates) {
   EXPECT_EQ(allocation_count(), before);
   EXPECT_GT(counters.exact, 1000u);
   EXPECT_GT(counters.triangles, 500u);
+}
+
+TEST(Allocation, NoCastOrDistanceAllocates) {
+  RandomPose random(62);
+  const std::vector<Shape> shapes = {Sphere{0.4},
+                                     Capsule{0.3, 0.6},
+                                     Box{Vec3(1, 2, 1)},
+                                     random_hull(random, 100, Vec3(0.6, 0.5, 0.7)),
+                                     Cylinder{0.4, 0.5},
+                                     Cone{0.4, 0.5},
+                                     Ellipsoid{Vec3(0.5, 0.4, 0.6)}};
+  const std::size_t count = shapes.size();
+  int rays = 0, casts = 0, apart = 0;
+  const std::uint64_t before = allocation_count();
+  for (std::size_t i = 0; i < 3000; ++i) {
+    const Shape& a = shapes[i % count];
+    const Shape& b = shapes[i / count % count];
+    const Pose X_AB = random.pose(2.0);
+    const Vec3 d = random.direction();
+    rays += cast_ray(b, {-2.0 * d, d}).has_value();
+    casts += cast_shape(a, b, X_AB, 2.0 * d).has_value();
+    apart += !compute_distance(a, b, X_AB).overlap;
+  }
+  EXPECT_EQ(allocation_count(), before);
+  EXPECT_GT(rays, 1000);
+  EXPECT_GT(casts, 300);
+  EXPECT_GT(apart, 500);
 }
 
 }  // namespace

@@ -130,15 +130,15 @@ class DirectionReference {
 
   /// The optimum that a direction near it belongs to, to the rounding of a gradient instead of the root of that of a
   /// separation: where the way between the furthest points has no part across n (Newton's method); on a circle where
-  /// supports jump, no part along the circle; where two circles cross; and along faces. The best of these, or the direction
-  /// itself if none is better by more than rounding: round an axis all may be equal.
+  /// supports jump, no part along the circle; where two circles cross; and along faces. The best of these, of equally good
+  /// ones the nearest, or the direction itself if none is better by more than rounding: round an axis all may be equal.
   Best polish(const Vec3& n_A) const {
     const Vec3L start = n_A.cast<long double>().normalized();
-    Best best{separation(start), start};
+    const Best given{separation(start), start};
+    std::vector<Best> offers;
     const auto offer = [&](const Vec3L& n) {
       if (!n.allFinite() || (n - start).norm() > 1e-3L) return;
-      const long double here = separation(Vec3L(n.normalized()));
-      if (here > best.separation + kRounding * size_) best = {here, n.normalized()};
+      offers.push_back({separation(Vec3L(n.normalized())), n.normalized()});
     };
     offer(polish_freely(start));
     const std::vector<CircleL> circles = all_circles();
@@ -155,7 +155,15 @@ class DirectionReference {
     }
     offer_faces(a_, [&](const Vec3L& n) { offer(n); });
     offer_faces(b_, [&](const Vec3L& n) { offer(-(R_AB_ * n)); });
-    return best;
+    long double most = given.separation;
+    for (const Best& other : offers) most = std::max(most, other.separation);
+    if (most <= given.separation + kRounding * size_) return given;
+    Best nearest{-1.0L, Vec3L::Constant(10.0L)};
+    for (const Best& other : offers) {
+      if (other.separation < most - kTie * size_) continue;
+      if ((other.normal_A - start).norm() < (nearest.normal_A - start).norm()) nearest = other;
+    }
+    return nearest;
   }
 
   /// Best of `directions` spread evenly and the axes of both shapes, after improving the `seeds` best.
@@ -320,6 +328,7 @@ class DirectionReference {
   }
 
   static constexpr long double kRounding = 1e-18L;  // of a separation, as a share of the size
+  static constexpr long double kTie = 4e-16L;  // the same in double: optima equal up to it are equally good
   /// As a share of the size, the slope of the separation that the rounding of a pose in double makes: where it is no
   /// steeper, as round an axis that both shapes share, one direction is as good as the next.
   static constexpr long double kFlat = 1e-15L;

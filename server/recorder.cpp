@@ -6,7 +6,6 @@
 #include <cmath>
 #include <utility>
 
-#include "snapshot.h"
 #include "stats.h"
 
 namespace tumble {
@@ -75,8 +74,17 @@ void Recorder::end_step(const Simulation& simulation, const CommandInbox& inbox,
 
 void Recorder::write_snapshot(const Simulation& simulation, const CommandInbox& inbox, std::int64_t utime) {
   since_snapshot_ = 0;
-  send_parts(take_snapshot(simulation, inbox), utime,
-             [&](const snapshot_t& part) { write(utime, snapshot_channel_, part); });
+  log_.finish();  // the last one is written: it can be overwritten
+  take_snapshot(simulation, inbox, *snapshot_);
+  log_.write_beside([snapshot = snapshot_, kept = simulation.kept(), start = simulation.start(),
+                     channel = snapshot_channel_, utime](EventLogWriter& log) {
+    add_kept(kept, *start, *snapshot);
+    std::vector<std::uint8_t> bytes;
+    send_parts(*snapshot, utime, [&](const snapshot_t& part) {
+      encode(part, bytes);
+      log.write(utime, channel, bytes);
+    });
+  });
 }
 
 void Recorder::write_picture(const Simulation& simulation, std::int64_t utime) {

@@ -184,7 +184,7 @@ void Replay::check(const Snapshot& snapshot) const {
   Simulation simulation = *simulation_;
   CommandInbox inbox;
   restore(snapshot, simulation, inbox);
-  if (take_snapshot(*simulation_, inbox_).simulation != snapshot.simulation) {
+  if (!is_same_state(take_whole_snapshot(*simulation_, inbox_), snapshot)) {
     throw std::runtime_error(
         fmt::format("it is not the state to which the commands led at step {}", simulation_->now_step()));
   }

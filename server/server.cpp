@@ -87,6 +87,8 @@ void Server::run(const volatile std::sig_atomic_t& stop) {
     tick();
     wait();
   }
+  record([](Recorder& r) { r.finish(); });
+  send_answers();
   publish(clock_.now_ns());
   send_heartbeat();
 }
@@ -113,7 +115,6 @@ void Server::receive_commands() {
     note(command, simulation_.now_step());
     apply(command);
   }
-  record([](Recorder& r) { r.flush(); });  // nothing is answered that could still be lost
   // Who asks again while the world stands still may have missed the state as well as the answer.
   if (inbox_.counters().repeated != std::exchange(repeated_, inbox_.counters().repeated) &&
       simulation_.paused()) {
@@ -146,15 +147,19 @@ void Server::apply(const Command& command) {
 }
 
 void Server::send_answers() {
-  const std::vector<Acknowledgement> answers = inbox_.take_answers();
-  if (answers.empty()) return;
+  const std::vector<Acknowledgement> fresh = inbox_.take_answers();
+  answers_.insert(answers_.end(), fresh.begin(), fresh.end());
+  bool safe = true;
+  record([&](Recorder& r) { safe = r.flush(); });
+  if (!safe || answers_.empty()) return;  // nothing is answered that could still be lost
   ack_t head{};
   head.utime = clock_.wall_us();
   head.session = simulation_.session();
   head.step = simulation_.now_step();
-  pack_acknowledgements(answers, head, bus_.payload_limit(), [this](const ack_t& message) {
+  pack_acknowledgements(answers_, head, bus_.payload_limit(), [this](const ack_t& message) {
     post(channel_name(settings_.world_name, kAckSuffix), message);
   });
+  answers_.clear();
 }
 
 void Server::note_query(Bytes bytes) {

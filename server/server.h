@@ -89,6 +89,7 @@ class Server {
   Simulation simulation_;
   CommandInbox inbox_;
   std::optional<Recorder> recorder_;
+  std::vector<Acknowledgement> answers_;  // that are still to be sent
   std::int64_t steps_done_ = 0;
   bool changed_ = true;           // something a receiver should know at once: publish now
   bool told_paused_ = false;      // as the last heartbeat said

@@ -12,8 +12,8 @@
 namespace tumble {
 
 Simulation::Simulation(World world, std::int64_t session)
-    : start_{std::move(world), {}},
-      now_(start_),
+    : start_(std::make_shared<const State>(State{std::move(world), {}})),
+      now_(*start_),
       session_(session),
       start_sums_(now_.world.compute_conserved()) {}
 
@@ -51,7 +51,7 @@ Outcome Simulation::apply_control(const control_t& command) {
     case control_t::VERB_SET_STATE:
       return apply_set_state(now_.world, command);
     case control_t::VERB_RESET:
-      start_session(start_);
+      start_session(*start_);
       return done();
     case control_t::VERB_SNAPSHOT:
       return keep_snapshot(command.name);
@@ -127,23 +127,23 @@ Outcome Simulation::unwatch(const control_t& command) {
 }
 
 Outcome Simulation::keep_snapshot(const std::string& name) {
-  if (!snapshots_.contains(name) && snapshots_.size() == kMaxSnapshots) {
+  if (!kept_.contains(name) && kept_.size() == kMaxSnapshots) {
     return {.status = Status::out_of_range,
             .detail = fmt::format("{} snapshots are kept already", kMaxSnapshots)};
   }
-  snapshots_.insert_or_assign(name, now_);
+  kept_.insert_or_assign(name, std::make_shared<const State>(now_));
   return done();
 }
 
 Outcome Simulation::restore_snapshot(const std::string& name) {
-  const auto kept = snapshots_.find(name);
-  if (kept == snapshots_.end()) {
+  const auto kept = kept_.find(name);
+  if (kept == kept_.end()) {
     std::string names;
-    for (const auto& [known, state] : snapshots_) names.append(names.empty() ? "" : ", ").append(known);
+    for (const auto& [known, state] : kept_) names.append(names.empty() ? "" : ", ").append(known);
     return {.status = Status::invalid,
             .detail = fmt::format("no snapshot \"{}\", only: {}", name, names.empty() ? "none" : names)};
   }
-  start_session(kept->second);
+  start_session(*kept->second);
   return done();
 }
 

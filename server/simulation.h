@@ -5,6 +5,7 @@
 
 #include <functional>
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,18 @@ namespace tumble {
 
 class Simulation {
  public:
+  /// A force command that was applied, until its last step is done.
+  struct ActivePush {
+    force_command_t command;
+    double end;  ///< Simulated [s].
+  };
+  struct State {
+    World world;
+    std::vector<ActivePush> pushes;
+  };
+  /// By name; what is kept never changes.
+  using KeptStates = std::map<std::string, std::shared_ptr<const State>>;
+
   /// `world` as it is now is what a reset goes back to. `session` > 0.
   Simulation(World world, std::int64_t session);
 
@@ -35,6 +48,9 @@ class Simulation {
   bool pushes_wanted() const { return pushes_wanted_; }
   /// The force commands that act in the next step, the newest first.
   std::vector<PushView> view_pushes() const;
+  /// What a reset goes back to, and what a restore can.
+  const std::shared_ptr<const State>& start() const { return start_; }
+  const KeptStates& kept() const { return kept_; }
 
  private:
   template <typename>
@@ -46,21 +62,11 @@ class Simulation {
   Outcome restore_snapshot(const std::string& name);
   Outcome push(const force_command_t& command);
   Outcome done() const { return {.step = now_step()}; }
-  /// A force command that was applied, until its last step is done.
-  struct ActivePush {
-    force_command_t command;
-    double end;  // simulated [s]
-  };
-  /// What a snapshot holds.
-  struct State {
-    World world;
-    std::vector<ActivePush> pushes;
-  };
   void start_session(const State& state);
 
-  State start_;  // what a reset goes back to
+  std::shared_ptr<const State> start_;
   State now_;
-  std::map<std::string, State> snapshots_;
+  KeptStates kept_;
   std::int64_t session_;
   Conserved start_sums_;
   bool paused_ = false;

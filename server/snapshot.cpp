@@ -5,8 +5,9 @@
 
 #include <algorithm>
 #include <bit>
-#include <sstream>
+#include <memory>
 #include <stdexcept>
+#include <tuple>
 #include <utility>
 
 #include "math/archive.h"
@@ -39,17 +40,15 @@ std::int64_t compute_checksum(const snapshot_t& part) {
 template <typename Archive>
 constexpr bool kReads = Archive::is_loading::value;
 
+/// Overwrites `bytes`.
 template <typename Object>
-std::string bytes_of(const Object& object) {
-  std::ostringstream out;
-  OutputArchive archive(out);
+void write_bytes(const Object& object, std::string& bytes) {
+  OutputArchive archive(bytes);
   archive(object);
-  return std::move(out).str();
 }
 template <typename Object>
 void read_bytes(const std::string& bytes, Object& object) {
-  std::istringstream in(bytes);
-  InputArchive archive(in);
+  InputArchive archive(bytes);
   archive(object);
 }
 
@@ -83,33 +82,35 @@ struct Archived<Simulation::ActivePush> {
 };
 template <>
 struct Archived<Simulation> {
-  template <typename Archive>
-  static void members(Archive& archive, Simulation& simulation) {
-    auto& [start, now, snapshots, session, start_sums, paused, steps_wanted, watched, contacts_wanted,
+  /// But for the worlds, whose bytes stand apart.
+  static void members(auto& archive, Simulation& simulation) {
+    auto& [start, now, kept, session, start_sums, paused, steps_wanted, watched, contacts_wanted,
            pushes_wanted] = simulation;
-    archive(session, start_sums, paused, steps_wanted, watched, contacts_wanted, pushes_wanted);
-    state(archive, start.world, now);  // `start` is the scene's
-    std::vector<std::string> names;
-    if (kReads<Archive>) snapshots.clear();
-    for (const auto& [name, kept] : snapshots) names.push_back(name);
-    archive(names);
-    for (const std::string& name : names) state(archive, start.world, snapshots[name]);
+    archive(now.pushes, session, start_sums, paused, steps_wanted, watched, contacts_wanted, pushes_wanted);
   }
-
- private:
-  template <typename Archive>
-  static void state(Archive& archive, const World& start, Simulation::State& state) {
-    auto& [world, pushes] = state;
-    std::stringstream bytes;
-    if (!kReads<Archive>) write_world(world, start, bytes);
-    std::string text = std::move(bytes).str();
-    archive(text, pushes);
-    if (kReads<Archive>) {
-      std::istringstream in(text);
-      world = read_world(start, in);
-    }
+  static void set_worlds(Simulation& simulation, World now, Simulation::KeptStates kept) {
+    simulation.now_.world = std::move(now);
+    simulation.kept_ = std::move(kept);
   }
 };
+
+namespace {
+
+/// By name: the bytes of the world, and its pushes.
+using KeptBytes = std::map<std::string, std::pair<std::string, std::vector<Simulation::ActivePush>>>;
+
+Simulation::KeptStates read_kept(const std::string& bytes, const World& start) {
+  KeptBytes read;
+  read_bytes(bytes, read);
+  Simulation::KeptStates kept;
+  for (auto& [name, state] : read) {
+    kept.emplace(name, std::make_shared<const Simulation::State>(
+                           Simulation::State{read_world(start, state.first), std::move(state.second)}));
+  }
+  return kept;
+}
+
+}  // namespace
 
 // The inbox
 
@@ -146,16 +147,41 @@ struct Archived<CommandInbox> {
   }
 };
 
-Snapshot take_snapshot(const Simulation& simulation, const CommandInbox& inbox) {
-  return {.session = simulation.session(),
-          .step = simulation.now_step(),
-          .state_hash = std::bit_cast<std::int64_t>(simulation.world().state_hash()),
-          .simulation = bytes_of(simulation),
-          .inbox = bytes_of(inbox)};
+void take_snapshot(const Simulation& simulation, const CommandInbox& inbox, Snapshot& snapshot) {
+  snapshot.session = simulation.session();
+  snapshot.step = simulation.now_step();
+  snapshot.state_hash = std::bit_cast<std::int64_t>(simulation.world().state_hash());
+  write_world(simulation.world(), simulation.start()->world, snapshot.world);
+  write_bytes(simulation, snapshot.simulation);
+  write_bytes(inbox, snapshot.inbox);
+}
+
+void add_kept(const Simulation::KeptStates& kept, const Simulation::State& start, Snapshot& snapshot) {
+  KeptBytes bytes;
+  for (const auto& [name, state] : kept) {
+    auto& [world, pushes] = bytes[name];
+    write_world(state->world, start.world, world);
+    pushes = state->pushes;
+  }
+  write_bytes(bytes, snapshot.kept);
+}
+
+Snapshot take_whole_snapshot(const Simulation& simulation, const CommandInbox& inbox) {
+  Snapshot snapshot;
+  take_snapshot(simulation, inbox, snapshot);
+  add_kept(simulation.kept(), *simulation.start(), snapshot);
+  return snapshot;
+}
+
+bool is_same_state(const Snapshot& a, const Snapshot& b) {
+  return a.world == b.world && a.simulation == b.simulation && a.kept == b.kept;
 }
 
 void restore(const Snapshot& snapshot, Simulation& simulation, CommandInbox& inbox) {
   try {
+    const World& start = simulation.start()->world;
+    Archived<Simulation>::set_worlds(simulation, read_world(start, snapshot.world),
+                                     read_kept(snapshot.kept, start));
     read_bytes(snapshot.simulation, simulation);
     read_bytes(snapshot.inbox, inbox);
   } catch (const std::exception& error) {  // cereal's, or of an allocation that nobody can have asked for
@@ -170,7 +196,8 @@ void restore(const Snapshot& snapshot, Simulation& simulation, CommandInbox& inb
 
 void send_parts(const Snapshot& snapshot, std::int64_t utime,
                 const std::function<void(const snapshot_t&)>& send) {
-  const std::string bytes = bytes_of(std::pair(snapshot.simulation, snapshot.inbox));
+  std::string bytes;
+  write_bytes(std::tie(snapshot.world, snapshot.simulation, snapshot.kept, snapshot.inbox), bytes);
   snapshot_t part{};
   part.utime = utime;
   part.session = snapshot.session;
@@ -206,13 +233,13 @@ bool SnapshotAssembly::add(const snapshot_t& part) {
 }
 
 Snapshot SnapshotAssembly::snapshot() const {
-  std::pair<std::string, std::string> both;
-  read_bytes(bytes_, both);
-  return {.session = head_.session,
-          .step = head_.step,
-          .state_hash = head_.state_hash,
-          .simulation = std::move(both.first),
-          .inbox = std::move(both.second)};
+  Snapshot snapshot;
+  snapshot.session = head_.session;
+  snapshot.step = head_.step;
+  snapshot.state_hash = head_.state_hash;
+  auto strings = std::tie(snapshot.world, snapshot.simulation, snapshot.kept, snapshot.inbox);
+  read_bytes(bytes_, strings);
+  return snapshot;
 }
 
 }  // namespace tumble

@@ -1,8 +1,10 @@
 // State as bytes and back, with cereal: little-endian, doubles to the bit. Every type lists its members once, for both
-// ways, by taking itself apart in a structured binding: a member that the list lacks does not compile.
+// ways, by taking itself apart in a structured binding: a member that the list lacks does not compile. The archives are
+// our own, on plain memory: cereal's go through a stream, whose call for every number costs several times the number.
 #pragma once
 
-#include <cereal/archives/portable_binary.hpp>
+#include <bit>
+#include <cereal/cereal.hpp>
 #include <cereal/types/array.hpp>
 #include <cereal/types/map.hpp>
 #include <cereal/types/optional.hpp>
@@ -11,6 +13,12 @@
 #include <cereal/types/utility.hpp>
 #include <cereal/types/variant.hpp>
 #include <cereal/types/vector.hpp>
+#include <cstddef>
+#include <cstring>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <type_traits>
 
 #include "math/pose.h"
 
@@ -18,7 +26,7 @@ namespace Eigen {
 
 template <typename Archive, int kRows, int kColumns>
 void serialize(Archive& archive, Matrix<double, kRows, kColumns>& m) {
-  archive(cereal::binary_data(m.data(), sizeof(double) * static_cast<std::size_t>(kRows * kColumns)));
+  archive.transfer(m.data(), sizeof(double) * static_cast<std::size_t>(kRows * kColumns));
 }
 
 template <typename Archive>
@@ -30,8 +38,72 @@ void serialize(Archive& archive, Quaterniond& q) {
 
 namespace tumble {
 
-using OutputArchive = cereal::PortableBinaryOutputArchive;
-using InputArchive = cereal::PortableBinaryInputArchive;
+static_assert(std::endian::native == std::endian::little);
+
+/// Overwrites `bytes`, whose memory it uses again; they are whole once the archive is gone.
+class OutputArchive : public cereal::OutputArchive<OutputArchive, cereal::AllowEmptyClassElision> {
+ public:
+  explicit OutputArchive(std::string& bytes)
+      : cereal::OutputArchive<OutputArchive, cereal::AllowEmptyClassElision>(this), bytes_(bytes) {}
+  OutputArchive(const OutputArchive&) = delete;
+  OutputArchive& operator=(const OutputArchive&) = delete;
+  ~OutputArchive() { bytes_.resize(static_cast<std::size_t>(at_ - bytes_.data())); }
+
+  [[gnu::always_inline]] void transfer(const void* data, std::size_t size) {
+    if (static_cast<std::size_t>(end_ - at_) < size) grow(size);
+    std::memcpy(at_, data, size);
+    at_ += size;
+  }
+
+ private:
+  [[gnu::noinline]] void grow(std::size_t size) {
+    const auto used = static_cast<std::size_t>(at_ - bytes_.data());
+    bytes_.resize(2 * bytes_.size() + size);
+    at_ = bytes_.data() + used;
+    end_ = bytes_.data() + bytes_.size();
+  }
+
+  std::string& bytes_;
+  char* at_ = bytes_.data();
+  char* end_ = bytes_.data() + bytes_.size();
+};
+
+/// Throws std::runtime_error if it is asked for more than there is.
+class InputArchive : public cereal::InputArchive<InputArchive, cereal::AllowEmptyClassElision> {
+ public:
+  explicit InputArchive(std::string_view bytes)
+      : cereal::InputArchive<InputArchive, cereal::AllowEmptyClassElision>(this), rest_(bytes) {}
+
+  void transfer(void* data, std::size_t size) {
+    if (rest_.size() < size) throw std::runtime_error("it ends too early");
+    std::memcpy(data, rest_.data(), size);
+    rest_.remove_prefix(size);
+  }
+
+ private:
+  std::string_view rest_;
+};
+
+template <typename Archive>
+concept OurArchive = std::is_same_v<Archive, OutputArchive> || std::is_same_v<Archive, InputArchive>;
+
+template <OurArchive Archive, typename Number>
+requires std::is_arithmetic_v<Number>
+[[gnu::always_inline]] inline void serialize(Archive& archive, Number& number) {
+  archive.transfer(&number, sizeof number);
+}
+template <OurArchive Archive, typename T>
+void serialize(Archive& archive, cereal::BinaryData<T>& block) {
+  if (block.size > 0) archive.transfer(block.data, static_cast<std::size_t>(block.size));
+}
+template <OurArchive Archive, typename T>
+void serialize(Archive& archive, cereal::SizeTag<T>& tag) {
+  archive(tag.size);
+}
+template <OurArchive Archive, typename T>
+void serialize(Archive& archive, cereal::NameValuePair<T>& pair) {
+  archive(pair.value);
+}
 
 /// A class with private state befriends this; its specialisation has `members(archive, object)`.
 template <typename T>
@@ -52,3 +124,5 @@ void serialize(Archive& archive, Pose& pose) {
 }
 
 }  // namespace tumble
+
+CEREAL_SETUP_ARCHIVE_TRAITS(tumble::InputArchive, tumble::OutputArchive)

@@ -40,8 +40,8 @@ SceneShapes number_shapes(const World& start) {
 /// The archives of this file are all of this kind.
 template <typename Archive>
 struct WithShapes : Archive {
-  template <typename Stream>
-  WithShapes(SceneShapes scene_shapes, Stream& stream) : Archive(stream), shapes(std::move(scene_shapes)) {}
+  template <typename Data>
+  WithShapes(SceneShapes scene_shapes, Data& data) : Archive(data), shapes(std::move(scene_shapes)) {}
   SceneShapes shapes;
 };
 template <typename Archive>
@@ -351,15 +351,15 @@ struct Archived<World> {
   }
 };
 
-void write_world(const World& world, const World& start, std::ostream& out) {
-  WithShapes<OutputArchive> archive(number_shapes(start), out);
+void write_world(const World& world, const World& start, std::string& bytes) {
+  WithShapes<OutputArchive> archive(number_shapes(start), bytes);
   archive(world);
 }
 
-World read_world(const World& start, std::istream& in) {
+World read_world(const World& start, std::string_view bytes) {
   World world(start.options());
   try {
-    WithShapes<InputArchive> archive(number_shapes(start), in);
+    WithShapes<InputArchive> archive(number_shapes(start), bytes);
     archive(world);
   } catch (const std::exception&) {  // cereal's, or of an allocation that nobody can have asked for
     refuse_bytes();

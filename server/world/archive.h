@@ -3,8 +3,8 @@
 // world that holds them. Counters are not state: they start anew.
 #pragma once
 
-#include <istream>
-#include <ostream>
+#include <string>
+#include <string_view>
 
 #include "world/world.h"
 
@@ -18,8 +18,9 @@ void serialize(Archive& archive, BodyId& id) {
 }
 
 /// `start`: the world that the scene describes, before its first step; it has every hull and surface of `world`.
-void write_world(const World& world, const World& start, std::ostream& out);
+/// Overwrites `bytes`, whose memory it uses again.
+void write_world(const World& world, const World& start, std::string& bytes);
 /// Throws std::runtime_error if the bytes are no world's.
-World read_world(const World& start, std::istream& in);
+World read_world(const World& start, std::string_view bytes);
 
 }  // namespace tumble

@@ -1,8 +1,12 @@
-// What snapshots in a log cost: taken, cut into events and encoded, as a recording server does within a tick; and
-// restored from them, as --resume does. The demo scenes after a run-in.
+// What snapshots in a log cost: taken, as a recording server does within a tick (`take`); cut into events and encoded,
+// as another thread does beside the steps (`write`); and restored from them, as --resume does. `copy` is as many bytes
+// from one place to another: what memory alone asks for. The demo scenes after a run-in.
 #include <benchmark/benchmark.h>
+#include <fmt/format.h>
 
+#include <cstring>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "scene/demo.h"
@@ -23,7 +27,7 @@ Simulation run_in(std::string_view demo) {
 
 std::vector<std::vector<std::uint8_t>> write_parts(const Simulation& simulation) {
   std::vector<std::vector<std::uint8_t>> events;
-  send_parts(take_snapshot(simulation, {}), 0,
+  send_parts(take_whole_snapshot(simulation, {}), 0,
              [&](const snapshot_t& part) { encode(part, events.emplace_back()); });
   return events;
 }
@@ -39,7 +43,28 @@ void tell_size(benchmark::State& state, const Simulation& simulation) {
 
 void measure_take(benchmark::State& state, std::string_view demo) {
   const Simulation simulation = run_in(demo);
-  for (auto run : state) benchmark::DoNotOptimize(write_parts(simulation));
+  Snapshot snapshot;
+  for (auto run : state) take_snapshot(simulation, {}, snapshot);
+  tell_size(state, simulation);
+}
+
+void measure_write(benchmark::State& state, std::string_view demo) {
+  const Simulation simulation = run_in(demo);
+  const Snapshot snapshot = take_whole_snapshot(simulation, {});
+  std::vector<std::uint8_t> bytes;
+  for (auto run : state) send_parts(snapshot, 0, [&](const snapshot_t& part) { encode(part, bytes); });
+  tell_size(state, simulation);
+}
+
+void measure_copy(benchmark::State& state, std::string_view demo) {
+  const Simulation simulation = run_in(demo);
+  const std::string from = take_whole_snapshot(simulation, {}).world;
+  std::string to = from;
+  for (auto run : state) {
+    std::memcpy(to.data(), from.data(), from.size());
+    benchmark::DoNotOptimize(to.data());
+    benchmark::ClobberMemory();
+  }
   tell_size(state, simulation);
 }
 
@@ -64,12 +89,16 @@ void measure_restore(benchmark::State& state, std::string_view demo) {
 }  // namespace tumble
 
 int main(int argc, char** argv) {
+  using Measure = void (*)(benchmark::State&, std::string_view);
+  const std::pair<const char*, Measure> measures[] = {{"take", tumble::measure_take},
+                                                      {"copy", tumble::measure_copy},
+                                                      {"write", tumble::measure_write},
+                                                      {"restore", tumble::measure_restore}};
   for (const std::string_view demo : {"tumbling", "pyramid", "pile"}) {
-    const std::string name(demo);
-    benchmark::RegisterBenchmark((name + "/take").c_str(), tumble::measure_take, demo)
-        ->Unit(benchmark::kMillisecond);
-    benchmark::RegisterBenchmark((name + "/restore").c_str(), tumble::measure_restore, demo)
-        ->Unit(benchmark::kMillisecond);
+    for (const auto& [name, measure] : measures) {
+      benchmark::RegisterBenchmark(fmt::format("{}/{}", demo, name).c_str(), measure, demo)
+          ->Unit(benchmark::kMillisecond);
+    }
   }
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;

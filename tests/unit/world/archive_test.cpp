@@ -1,7 +1,6 @@
 // A world as bytes: what is read back goes on with the same bits, whatever was going on.
 #include <gtest/gtest.h>
 
-#include <sstream>
 #include <string>
 
 #include "scene/demo.h"
@@ -12,14 +11,13 @@ namespace tumble {
 namespace {
 
 std::string bytes_of(const World& world, const World& start) {
-  std::ostringstream out;
-  write_world(world, start, out);
-  return std::move(out).str();
+  std::string bytes;
+  write_world(world, start, bytes);
+  return bytes;
 }
 
 World world_of(const std::string& bytes, const World& start) {
-  std::istringstream in(bytes);
-  return read_world(start, in);
+  return read_world(start, bytes);
 }
 
 /// Reads `world` back and steps both; every step has the same hash, and at the end every cached number is the same.

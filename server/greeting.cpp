@@ -39,9 +39,9 @@ std::string greeting(const ServerSettings& settings, const Bus& bus, const World
       "tumble-server {version}: {scene}, {bodies} bodies, step {dt:g} s, {pace}\n"
       "bus {url}{interface}, state at {publish:g} Hz, messages up to {limit} bytes\n"
       "\n"
-      "  sends     {w}_STATE  {w}_STATS  {w}_CATALOG  {w}_HEARTBEAT  {w}_ACK\n"
-      "            {w}_BODY_<id> (watched bodies)  {w}_CONTACTS (on request)\n"
-      "  receives  {w}_FORCE  {w}_CONTROL\n"
+      "  sends     {w}_{state}  {w}_STATS  {w}_CATALOG  {w}_HEARTBEAT  {w}_ACK  {w}_HITS\n"
+      "            {w}_BODY_<id> (watched bodies)  {w}_CONTACTS  {w}_PUSHES (on request)\n"
+      "  receives  {w}_FORCE  {w}_CONTROL  {w}_QUERY\n"
       "\n"
       "In another terminal:\n"
       "  ./run spy{spy}\n"
@@ -55,7 +55,8 @@ std::string greeting(const ServerSettings& settings, const Bus& bus, const World
       fmt::arg("url", url),
       fmt::arg("interface", bus.interface().empty() ? "" : " on interface " + bus.interface()),
       fmt::arg("publish", settings.publish_rate), fmt::arg("limit", bus.payload_limit()), fmt::arg("w", name),
-      fmt::arg("spy", spy), fmt::arg("options", options), fmt::arg("body", body), fmt::arg("python", python));
+      fmt::arg("state", settings.packed ? "PACKED" : "STATE"), fmt::arg("spy", spy),
+      fmt::arg("options", options), fmt::arg("body", body), fmt::arg("python", python));
 }
 
 }  // namespace tumble

@@ -121,6 +121,7 @@ ServerSettings make_settings(const Arguments& arguments, const std::string& scen
   settings.scene_name = scene_name;
   settings.publish_rate = arguments.publish_rate;
   settings.steps = arguments.steps;
+  settings.packed = arguments.packed;
   settings.rate = arguments.fast ? 0.0 : arguments.rate > 0.0 ? arguments.rate : rate;
   return settings;
 }
@@ -134,7 +135,7 @@ int run_server(Simulation simulation, CommandInbox inbox, const ServerSettings& 
   Outbox outbox(
       settings.world_name, bus.payload_limit(), clock,
       [&bus](const std::string& channel, Bytes payload) { return bus.publish(channel, payload); },
-      arguments.packed ? Encoding::packed : Encoding::exact,
+      settings.packed ? Encoding::packed : Encoding::exact,
       static_cast<std::int64_t>(kSpread * 1e9 / settings.publish_rate));
   Server server(std::move(simulation), settings, clock, bus, outbox, std::move(inbox));
   if (make_recorder) server.set_recorder(make_recorder());

@@ -31,6 +31,7 @@ struct ServerSettings {
   double rate = 0.0;                          ///< Steps a second of wall time; 0: as fast as possible.
   double publish_rate = kDefaultPublishRate;  ///< Publications of the state a second of wall time, > 0.
   std::int64_t steps = 0;                     ///< Stop after so many steps; 0: run on.
+  bool packed = false;                        ///< For people: how the outbox encodes the state.
 };
 
 class Server {

@@ -4,6 +4,8 @@
 #include <tinyxml2.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -142,8 +144,8 @@ SceneReading read_sdf_text(const std::string& text, const std::string& name, con
 
 SceneReading read_sdf(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
-  if (!file || std::filesystem::is_directory(path))
-    throw SceneError(path + ":0: <sdf>: the file cannot be read");
+  if (std::filesystem::is_directory(path)) throw SceneError(path + ": is a folder, not a scene");
+  if (!file) throw SceneError(path + ": the scene can't be read: " + std::strerror(errno));
   const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
   return read_sdf_text(text, path, std::filesystem::path(path).parent_path().string());
 }

@@ -112,7 +112,7 @@ def measure(link, folder, count, encoding):
     scene.write_text(SCENE.format(count=count, rows=rows, cols=-(-count // rows)), encoding="utf-8")
     arguments = [scene, "--lcm-url", CABLE_URL, "--encoding", encoding]
     with Server(folder / "server.log", *arguments, wrapper=link.far) as server:
-        server.wait_for_output("TUMBLE_STATE", 60.0)
+        server.wait_for_output("TUMBLE_HEARTBEAT", 60.0)
         with World(url=CABLE_URL, timeout=60.0) as world:  # all of them move and turn
             for body in world:
                 body.push(force=(body.mass, 0, 0), torque=(0, 0, 0.01 * body.mass), wait=False)
@@ -139,7 +139,7 @@ def lock_step(folder):
              "| scene | round trips a second | p50 / p99 [us] |", "|---|---|---|"]
     for demo in ("springs", "pyramid"):
         with Server(folder / "server.log", "--demo", demo) as server:
-            server.wait_for_output("TUMBLE_STATE", 20.0)
+            server.wait_for_output("TUMBLE_HEARTBEAT", 20.0)
             done = subprocess.run([program, "4000"], check=True, capture_output=True, text=True, timeout=120)
             rate, p50, p99 = done.stdout.split()
             lines.append(f"| {demo} | {rate} | {p50} / {p99} |")

@@ -32,7 +32,7 @@ def repair(link):
 
 def start_far(link, start, *arguments):
     server = start(*arguments, "--lcm-url", CABLE_URL, wrapper=link.far)
-    server.wait_for_output("TUMBLE_STATE", 20.0)
+    server.wait_for_output("TUMBLE_HEARTBEAT", 20.0)
     return server
 
 

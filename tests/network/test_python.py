@@ -99,7 +99,7 @@ def test_a_packed_world_looks_the_same(start):
     """The same step of the same run in both encodings: no further apart than the standard says."""
     states = []
     for name, encoding in (("A", "exact"), ("B", "packed")):
-        start("--demo", "pyramid", "--encoding", encoding, "--world", name).wait_for_output("_STATE")
+        start("--demo", "pyramid", "--encoding", encoding, "--world", name).wait_for_output("_PACKED" if encoding == "packed" else "_STATE")
         with World(name, timeout=10.0) as world:
             world.pause()
             world.reset()

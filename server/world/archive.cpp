@@ -274,10 +274,10 @@ void serialize(Archive& archive, Push& push) {
 /// Impulses of the points that are there.
 template <typename Archive>
 void serialize(Archive& archive, Contact& contact) {
-  auto& [pair, body_a, body_b, friction, restitution, rolling, torsional, threshold, fast, flies, clear_until,
-         way_a, way_b, cache, manifold, normal_W, impulse, moment] = contact;
-  archive(pair, body_a, body_b, friction, restitution, rolling, torsional, threshold, fast, flies,
-          clear_until, way_a, way_b, cache, manifold, normal_W);
+  auto& [pair, body_a, body_b, friction, restitution, rolling, torsional, threshold, fast, flies, cache,
+         manifold, normal_W, impulse, moment] = contact;
+  archive(pair, body_a, body_b, friction, restitution, rolling, torsional, threshold, fast, flies, cache,
+          manifold, normal_W);
   for (std::size_t i = 0; i < static_cast<std::size_t>(manifold.count); ++i) archive(impulse[i], moment[i]);
 }
 template <>
@@ -286,6 +286,19 @@ struct Archived<ContactGraph> {
     auto& [contacts, incoming, late] = graph;
     archive(contacts, late);
     incoming.clear();  // within an insertion only
+  }
+};
+template <typename Archive>
+void serialize(Archive& archive, ClearPair& clear) {
+  auto& [a, b, body_a, body_b, way_a, way_b, until] = clear;
+  archive(a, b, body_a, body_b, way_a, way_b, until);
+}
+template <>
+struct Archived<ClearPairs> {
+  static void members(auto& archive, ClearPairs& clear) {
+    auto& [pairs, incoming] = clear;
+    archive(pairs);
+    incoming.clear();  // within a step only
   }
 };
 template <typename Archive>
@@ -303,8 +316,8 @@ struct Archived<World::ActivePush> {
 template <>
 struct Archived<World::FreeBody> {
   static void members(auto& archive, auto& body) {
-    auto& [flight, takeoff, last, due, reach] = body;
-    archive(flight, takeoff, last, due, reach);
+    auto& [flight, takeoff, last, due, boxed, reach] = body;
+    archive(flight, takeoff, last, due, boxed, reach);
   }
 };
 template <>
@@ -327,14 +340,14 @@ struct Archived<World> {
     auto& [options, step_count, time_before, steps_before, model_epoch, body_count, dynamic_count,  //
            bodies, masses, geometries, free_bodies, free_geometries, names,                         //
            motions, flight_state, free, way, awake_flag, pushed, paired, calm_for, rest_next,       //
-           broad_phase, contacts, ties, jointed, pushes, due, aloft_count,                          //
+           broad_phase, contacts, clear_pairs, ties, jointed, pushes, due, aloft_count,             //
            active_stale, awake, kinematic, active_contacts, resting_points, resting_penetration,    //
            work_saved, step_residual, step_push_work, counters, report, contained, scratch] = world;
     archive(options.time_step);  // the other options are the scene's
     archive(step_count, time_before, steps_before, model_epoch, body_count, dynamic_count);
     archive(bodies, masses, geometries, free_bodies, free_geometries, names);
     archive(motions, flight_state, way, awake_flag, pushed, paired, calm_for, rest_next);
-    archive(broad_phase, contacts, ties, jointed, pushes, due, aloft_count);
+    archive(broad_phase, contacts, clear_pairs, ties, jointed, pushes, due, aloft_count);
     archive(active_stale, awake, kinematic, active_contacts, resting_points, resting_penetration);
     archive(work_saved, step_residual, step_push_work, report, contained);
     archive(scratch.loaded);  // whose loads the next step takes off

@@ -19,9 +19,6 @@ struct Contact {
   /// Fast: crosses a good part of the smaller geometry in a step. Flies: no part of the smooth problem; the two meet,
   /// if at all, in an impact.
   bool fast = false, flies = false;
-  /// Until this step the two do not come near each other, as long as neither leaves the way it is on.
-  std::uint64_t clear_until = 0;
-  std::uint32_t way_a = 0, way_b = 0;  ///< Those ways, by number.
   PairCache cache;
   Manifold manifold;
   Vec3 normal_W = Vec3::UnitZ();  ///< The manifold's normal in W at the last query.

@@ -1,9 +1,11 @@
 // Free bodies. A body on which only constant forces act follows its Flight from where it took off: a step evaluates it
 // where it is looked at, and ends with the same bits whether it does or not. A body that can meet nobody before some
-// later step is aloft: no step visits it until then, nor does it cost anything unless somebody reads its motion.
+// later step is aloft: no step visits it until then, nor does it cost anything unless somebody reads its motion. Its boxes
+// hold its way; with whom they overlap it is a clear pair.
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <optional>
 
 #include "world/world.h"
 
@@ -11,8 +13,11 @@ namespace tumble {
 namespace {
 
 /// How many steps ahead the box of a body aloft reaches: much farther whenever it was left without having met anybody,
-/// nearer while it holds somebody.
+/// nearer while it holds somebody that it may meet, or too many to keep an eye on.
 constexpr std::uint64_t kNearest = 8, kFarther = 64, kNearer = 4, kFarthest = std::uint64_t{1} << 19;
+/// The same while it holds others, of whom it is clear. Long boxes are kept only by who is aloft.
+constexpr std::uint64_t kFarthestInCompany = 32;
+constexpr std::size_t kMostCompany = 32;
 
 /// Phases [rad] within which a flight keeps its digits; then it is started anew.
 constexpr double kLargestPhase = 1e6;
@@ -20,7 +25,7 @@ constexpr double kLargestPhase = 1e6;
 }  // namespace
 
 Motion World::motion(std::uint32_t slot) const {
-  return aloft(slot) ? motion_in_flight(slot, step_count_) : motions_[slot];
+  return motion_at(slot, step_count_);
 }
 
 Motion World::motion_in_flight(std::uint32_t slot, std::uint64_t step) const {
@@ -108,13 +113,13 @@ void World::take_off(std::uint32_t slot) {
   body.takeoff = step_count_;
   const double steps = kLargestPhase / (body.flight.phase_rate() * options_.time_step);
   body.last = step_count_ + static_cast<std::uint64_t>(std::max(1.0, std::min(0x1p60, steps)));
-  body.due = step_count_;
+  body.due = body.boxed = step_count_;
   body.reach = kNearest;
   flight_state_[slot] = FlightState::flying;
 }
 
-/// Its boxes, if none of them meets anybody else's.
-bool World::reach_ahead(std::uint32_t slot, std::uint64_t now, std::uint64_t until) {
+std::optional<std::size_t> World::reach_ahead(std::uint32_t slot, std::uint64_t now, std::uint64_t until,
+                                              const StepContext& step) {
   const FreeBody& body = free_[slot];
   const double h = options_.time_step;
   const Aabb path = body.flight.path_bounds(static_cast<double>(now - body.takeoff) * h,
@@ -122,28 +127,39 @@ bool World::reach_ahead(std::uint32_t slot, std::uint64_t now, std::uint64_t unt
   const auto box = [&](const Geometry& geometry) {
     return path.grown(geometry.reach() + geometry.contact_margin);
   };
+  std::size_t company = 0;
   for (const std::uint32_t index : bodies_[slot].geometries) {
     const Aabb bounds = box(geometries_[index]);
-    if (!bounds.lower.allFinite() || !bounds.upper.allFinite()) return false;
+    if (!bounds.lower.allFinite() || !bounds.upper.allFinite()) return std::nullopt;
     scratch_.near.clear();
     broad_phase_.query(bounds, scratch_.near);
+    std::erase_if(scratch_.near, [&](std::uint32_t other) { return geometries_[other].body == slot; });
+    company += scratch_.near.size();
+    if (company > kMostCompany) return std::nullopt;
     for (const std::uint32_t other : scratch_.near) {
-      if (geometries_[other].body != slot) return false;
+      const GeometryPair pair{std::min(index, other), std::max(index, other)};
+      if (jointed(slot, geometries_[other].body) || clear_pairs_.holds(pair)) continue;
+      if (surface_of(geometries_[other].shape) || contacts_.find(pair)) return std::nullopt;
+      Contact contact = make_contact(pair);
+      if (!leave_if_clear(contact, pair_margin(contact, step, now), now)) return std::nullopt;
     }
   }
   for (const std::uint32_t index : bodies_[slot].geometries)
     broad_phase_.place(index, box(geometries_[index]));
-  return true;
+  return company;
 }
 
-bool World::lift(std::uint32_t slot, std::uint64_t now) {
+bool World::lift(std::uint32_t slot, std::uint64_t now, const StepContext& step) {
   FreeBody& body = free_[slot];
-  for (body.reach = std::min(kFarthest, kFarther * body.reach); body.reach >= kNearest;
-       body.reach /= kNearer) {
+  for (; body.reach >= kNearest; body.reach /= kNearer) {
     // Bodies thrown together do not all end together.
     const std::uint64_t until = std::min(now + body.reach - slot % (body.reach / 2), body.last);
-    if (until <= now || !reach_ahead(slot, now, until)) continue;
-    body.due = until;
+    if (until <= now) continue;
+    const std::optional<std::size_t> company = reach_ahead(slot, now, until, step);
+    if (!company) continue;
+    body.reach = *company == 0 ? std::min(kFarthest, kFarther * body.reach)
+                               : std::min(kFarthestInCompany, 2 * body.reach);
+    body.boxed = until;
     due_.push_back({until, slot});
     std::push_heap(due_.begin(), due_.end(), std::greater<>());
     return true;
@@ -153,28 +169,28 @@ bool World::lift(std::uint32_t slot, std::uint64_t now) {
   return false;
 }
 
-bool World::try_lift(std::uint32_t slot) {
-  FreeBody& body = free_[slot];
+bool World::try_lift(std::uint32_t slot, const StepContext& step) {
+  const FreeBody& body = free_[slot];
   const std::uint64_t now = step_count_ + 1;
   if (flight_state_[slot] != FlightState::flying || !body.flight.turns_freely() || !options_.skip_flying ||
-      now < body.due || paired_[slot] || pushed_[slot]) {
+      paired_[slot] || pushed_[slot]) {
     return false;
   }
-  if (!lift(slot, now)) return false;
+  if (now >= body.boxed && (now < body.due || !lift(slot, now, step))) return false;
   flight_state_[slot] = FlightState::aloft;
   ++aloft_count_;
   active_stale_ = true;
   return true;
 }
 
-void World::renew_flights() {
+void World::renew_flights(const StepContext& step) {
   const std::uint64_t now = step_count_ + 1;
   while (!due_.empty() && due_.front().step <= now) {
     std::pop_heap(due_.begin(), due_.end(), std::greater<>());
     const std::uint32_t slot = due_.back().slot;
     due_.pop_back();
-    if (!aloft(slot) || free_[slot].due > now) continue;  // it came down before, or went up again since
-    if (lift(slot, now)) continue;
+    if (!aloft(slot) || free_[slot].boxed > now) continue;  // it came down before, or went up again since
+    if (lift(slot, now, step)) continue;
     descend(slot, now);
   }
 }
@@ -184,10 +200,12 @@ void World::descend(std::uint32_t slot, std::uint64_t now) {
   if (flight_state_[slot] != FlightState::aloft) return;
   motions_[slot] = motion_in_flight(slot, now);
   flight_state_[slot] = FlightState::flying;
-  body.reach = kNearest;
-  body.due = now + kNearest;
   --aloft_count_;
   active_stale_ = true;
+  if (body.boxed > now && body.boxed <= now + kFarthestInCompany) return;  // and may go aloft again in them
+  body.boxed = now;
+  body.reach = kNearest;
+  body.due = now + kNearest;
   renew_boxes(slot);
 }
 

@@ -412,8 +412,10 @@ void World::renew_boxes_within(const Blow& blow, const StepContext& rest) {
       left |= broad_phase_.move(index, contact_bounds(geometry, rest.h), geometry.fat_margin, way);
     }
   }
-  if (!left) return;
-  find_pairs();
+  scratch_.pairs.clear();
+  if (left) find_pairs();
+  recall_clear_pairs();
+  if (scratch_.pairs.empty()) return;
   const auto known = static_cast<std::uint32_t>(contacts_.all().size());
   const std::size_t added =
       contacts_.insert_late(scratch_.pairs, [this](GeometryPair pair) { return make_contact(pair); });

@@ -28,6 +28,10 @@ void drop_repeated_points(std::vector<Contact>& contacts, std::uint32_t index) {
   }
 }
 
+/// [steps] A pair is left to its ways for no less, which would cost more than to look at it, and for no more, so that it is
+/// soon forgotten once its boxes have come apart.
+constexpr double kShortestClear = 4.0, kLongestClear = 64.0;
+
 /// Of the geometry's furthest point about the centre of mass [m/s].
 double turning_speed(const Geometry& geometry, const Motion& motion) {
   // What does not turn may be infinite.
@@ -60,7 +64,7 @@ void World::step(const std::function<void(Stage)>& stage_done) {
   save_work();
   apply_pushes(step);
   stage_done(Stage::commands);
-  update_pairs();
+  update_pairs(step);
   stage_done(Stage::broad_phase);
   update_contacts(step);
   stage_done(Stage::narrow_phase);
@@ -151,16 +155,19 @@ void World::update_boxes(const StepContext& step) {
     }
   };
   for (const std::uint32_t slot : awake_) {  // what came to rest in this step is still listed
-    if (!try_lift(slot)) update(slot);
+    const bool boxed = flight_state_[slot] == FlightState::flying && free_[slot].boxed > step_count_ + 1;
+    if (!try_lift(slot, step) && !boxed) update(slot);
   }
   for (const std::uint32_t slot : kinematic_) update(slot);
-  renew_flights();
+  renew_flights(step);
+  clear_pairs_.settle();
   counters_.boxes_renewed = broad_phase_.boxes_renewed();
 }
 
-void World::update_pairs() {
+void World::update_pairs(const StepContext& step) {
   refresh_active();
   find_pairs();
+  recall_clear_pairs();
   scratch_.lost.clear();
   std::copy_if(active_contacts_.begin(), active_contacts_.end(), std::back_inserter(scratch_.lost),
                [this](std::uint32_t index) { return is_lost(contacts_.all()[index].pair); });
@@ -168,10 +175,33 @@ void World::update_pairs() {
     contacts_.remove(scratch_.lost);
     active_stale_ = true;
   }
+  leave_clear_pairs(step);
   if (contacts_.insert(scratch_.pairs, [this](GeometryPair pair) { return make_contact(pair); }) > 0) {
     active_stale_ = true;
   }
   refresh_active();
+}
+
+void World::recall_clear_pairs() {
+  const auto found = static_cast<std::ptrdiff_t>(scratch_.pairs.size());
+  clear_pairs_.take_due(step_count_, way_, scratch_.pairs);
+  const auto recalled = scratch_.pairs.begin() + found;
+  scratch_.pairs.erase(
+      std::remove_if(recalled, scratch_.pairs.end(), [this](GeometryPair pair) { return is_lost(pair); }),
+      scratch_.pairs.end());
+  std::inplace_merge(scratch_.pairs.begin(), scratch_.pairs.begin() + found, scratch_.pairs.end());
+}
+
+void World::leave_clear_pairs(const StepContext& step) {
+  counters_.pairs_skipped_clear += clear_pairs_.size();
+  if (!options_.skip_flying) return;
+  std::erase_if(scratch_.pairs, [&](GeometryPair pair) {
+    if (!keeps_its_way(geometries_[pair.a].body) || !keeps_its_way(geometries_[pair.b].body)) return false;
+    if (contacts_.find(pair)) return false;
+    Contact contact = make_contact(pair);
+    return leave_if_clear(contact, pair_margin(contact, step, step_count_), step_count_);
+  });
+  clear_pairs_.settle();
 }
 
 void World::find_pairs() {
@@ -180,7 +210,7 @@ void World::find_pairs() {
   std::erase_if(scratch_.pairs, [this](const GeometryPair& pair) {
     const std::uint32_t a = geometries_[pair.a].body;
     const std::uint32_t b = geometries_[pair.b].body;
-    return a == b || !(movable(a) || movable(b)) || jointed(a, b);
+    return a == b || !(movable(a) || movable(b)) || jointed(a, b) || clear_pairs_.holds(pair);
   });
   split_surface_pairs();
 }
@@ -232,10 +262,10 @@ Contact World::make_contact(GeometryPair pair) const {
   return contact;
 }
 
-double World::pair_margin(Contact& contact, const StepContext& step) const {
+double World::pair_margin(Contact& contact, const StepContext& step, std::uint64_t now) const {
   const Geometry& a = geometries_[contact.pair.a];
   const Geometry& b = geometries_[contact.pair.b];
-  const Motion &A = motions_[contact.body_a], &B = motions_[contact.body_b];
+  const Motion A = motion_at(contact.body_a, now), B = motion_at(contact.body_b, now);
   // What could close within the step must be seen before it does.
   double way = step.h * Vec3(A.v - B.v).norm();
   contact.fast = step.impact_events && way > std::min(a.radius, b.radius);
@@ -253,19 +283,19 @@ double World::pair_margin(Contact& contact, const StepContext& step) const {
 }
 
 void World::update_contacts(const StepContext& step) {
+  scratch_.lost.clear();
   for (const std::uint32_t index : active_contacts_) {
-    if (options_.skip_flying && is_clear(contacts_.all()[index])) {
-      ++counters_.pairs_skipped_clear;
-    } else {
-      update_contact(index, step);
-    }
+    const double margin = update_contact(index, step);
+    const Contact& contact = contacts_.all()[index];
+    if (options_.skip_flying && contact.manifold.count == 0 && leave_if_clear(contact, margin, step_count_))
+      scratch_.lost.push_back(index);
+  }
+  if (!scratch_.lost.empty()) {
+    contacts_.remove(scratch_.lost);
+    clear_pairs_.settle();
+    active_stale_ = true;
   }
   refresh_active();
-}
-
-bool World::is_clear(const Contact& contact) const {
-  return step_count_ < contact.clear_until && way_[contact.body_a] == contact.way_a &&
-         way_[contact.body_b] == contact.way_b;
 }
 
 bool World::keeps_its_way(std::uint32_t slot) const {
@@ -279,11 +309,10 @@ Vec3 World::acceleration_on_way(std::uint32_t slot) const {
 }
 
 /// From balls about the centres of mass that hold the shapes, or such a ball and a plane.
-void World::foresee_clearance(Contact& contact, double margin, double h) const {
-  contact.clear_until = 0;
-  if (!keeps_its_way(contact.body_a) || !keeps_its_way(contact.body_b)) return;
+bool World::leave_if_clear(const Contact& contact, double margin, std::uint64_t now) {
+  if (!keeps_its_way(contact.body_a) || !keeps_its_way(contact.body_b) || contact.pair.part > 0) return false;
   const Geometry &a = geometries_[contact.pair.a], &b = geometries_[contact.pair.b];
-  const Motion &A = motions_[contact.body_a], &B = motions_[contact.body_b];
+  const Motion A = motion_at(contact.body_a, now), B = motion_at(contact.body_b, now);
   const Vec3 g = acceleration_on_way(contact.body_b) - acceleration_on_way(contact.body_a);
   const bool plane_a = std::holds_alternative<HalfSpace>(a.shape);
   double time = 0.0;
@@ -297,26 +326,34 @@ void World::foresee_clearance(Contact& contact, double margin, double h) const {
   } else {
     time = time_apart(B.x - A.x, B.v - A.v, g, a.reach() + b.reach() + margin);
   }
-  contact.clear_until = step_count_ + static_cast<std::uint64_t>(std::min(0x1p40, time / h));
-  contact.way_a = way_[contact.body_a];
-  contact.way_b = way_[contact.body_b];
+  const double steps = time / options_.time_step;
+  if (steps < kShortestClear) return false;
+  clear_pairs_.add({.a = contact.pair.a,
+                    .b = contact.pair.b,
+                    .body_a = contact.body_a,
+                    .body_b = contact.body_b,
+                    .way_a = way_[contact.body_a],
+                    .way_b = way_[contact.body_b],
+                    .until = now + static_cast<std::uint64_t>(std::min(kLongestClear, steps))});
+  return true;
 }
 
-void World::update_contact(std::uint32_t index, const StepContext& step) {
+double World::update_contact(std::uint32_t index, const StepContext& step) {
   Contact& contact = contacts_.all()[index];
   const Geometry& a = geometries_[contact.pair.a];
   const Geometry& b = geometries_[contact.pair.b];
   const Manifold old_manifold = contact.manifold;
   const Pose X_WA = geometry_pose(a);
-  const double margin = pair_margin(contact, step);
+  const double margin = pair_margin(contact, step, step_count_);
   update_manifold(a.shape, X_WA, b.shape, geometry_pose(b), margin, options_.narrow_phase, contact.cache,
                   counters_.narrow_phase, contact.manifold, contact.pair.part);
   contact.normal_W = X_WA.q * contact.manifold.normal_A;
   if (contact.pair.part > 0) drop_repeated_points(contacts_.all(), index);
-  if (contact.manifold.count == 0) return foresee_clearance(contact, margin, step.h);
+  if (contact.manifold.count == 0) return margin;
   transport_impulses(old_manifold, contact.manifold, contact.normal_W, a.contact_margin, contact.impulse);
   wake_slot(contact.body_a);
   wake_slot(contact.body_b);
+  return margin;
 }
 
 void World::refresh_active() {
@@ -413,7 +450,7 @@ void World::update_report() {
   report_ = StepReport{};
   report_.bodies_awake = static_cast<std::uint32_t>(awake_.size()) + aloft_count_;
   report_.bodies_resting = dynamic_count_ - report_.bodies_awake;
-  report_.pairs = static_cast<std::uint32_t>(contacts_.all().size());
+  report_.pairs = static_cast<std::uint32_t>(contacts_.all().size() + clear_pairs_.size());
   report_.islands = static_cast<std::uint32_t>(scratch_.islands.count()) + aloft_count_;
   report_.contacts = resting_points_;
   report_.deepest_penetration = resting_penetration_;

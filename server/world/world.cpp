@@ -203,6 +203,7 @@ bool World::destroy_body(BodyId id) {
     }
   }
   contacts_.remove_if([slot](const Contact& c) { return c.body_a == slot || c.body_b == slot; });
+  clear_pairs_.forget(slot);
   for (const Tie& tie : ties_) {
     if (tie.a == slot && tie.b != kWorld) wake_slot(tie.b);
     if (tie.b == slot && tie.a != kWorld) wake_slot(tie.a);

@@ -16,6 +16,7 @@
 #include "dynamics/island.h"
 #include "dynamics/pattern_store.h"
 #include "dynamics/smooth_motion.h"
+#include "world/clear_pairs.h"
 #include "world/contact_graph.h"
 #include "world/definition.h"
 #include "world/diagnostics.h"
@@ -136,8 +137,10 @@ class World {
     Flight flight;
     std::uint64_t takeoff = 0;  ///< Where the flight's time starts,
     std::uint64_t last = 0;     ///< and where it starts anew, before its phases lose digits.
-    std::uint64_t due = 0;      ///< Aloft: its box holds until here. Flying: it tries to go aloft then.
-    std::uint64_t reach = 0;    ///< Length of its last box [steps].
+    std::uint64_t due = 0;      ///< It does not try to reach ahead again before this step.
+    std::uint64_t boxed =
+        0;  ///< Until this step its boxes hold its way; aloft: it has to reach ahead again then.
+    std::uint64_t reach = 0;  ///< How far it tries to reach ahead next [steps].
   };
   struct Due {
     std::uint64_t step;
@@ -159,7 +162,7 @@ class World {
     std::vector<GeometryPair> whole_pairs, split_pairs;  // pairs as found; those of them with a surface
     std::vector<std::uint32_t> triangles;
     std::vector<std::uint32_t> near;  // geometries in the box of a flight
-    std::vector<std::uint32_t> lost;  // contacts whose boxes came apart, ascending
+    std::vector<std::uint32_t> lost;  // contacts whose boxes came apart, or that are clear, ascending
     std::vector<IslandEdge> edges;
     std::vector<std::uint32_t> edge_source;  // contact index, or contacts().size() + tie index
     IslandBuilder builder;
@@ -232,7 +235,11 @@ class World {
   void apply_pushes(const StepContext& step);
   /// Takes the load off bodies that it would make non-finite, so that they don't take others with them.
   void contain_overloaded(const StepContext& step);
-  void update_pairs();
+  void update_pairs(const StepContext& step);
+  /// Of the pairs found: those that their ways keep apart are no contacts.
+  void leave_clear_pairs(const StepContext& step);
+  /// Clear pairs whose time has come, or whose bodies left their ways, are pairs found again.
+  void recall_clear_pairs();
   /// Replaces the pairs with a surface by pairs with those of its triangles that meet the other's fat box.
   void split_surface_pairs();
   /// The boxes came apart, or this triangle is none of those that the other's new fat box meets.
@@ -240,7 +247,8 @@ class World {
   /// Pairs of geometries with a new box, sorted.
   void find_pairs();
   void update_contacts(const StepContext& step);
-  void update_contact(std::uint32_t index, const StepContext& step);
+  /// Returns the margin [m] within which points were looked for.
+  double update_contact(std::uint32_t index, const StepContext& step);
   void refresh_active();
   void build_islands(const StepContext& step);
   void advance_islands(const StepContext& step);
@@ -259,17 +267,21 @@ class World {
   /// Where the geometry, or a contact of it, can be while the body turns through a step of h.
   Aabb contact_bounds(const Geometry& geometry, double h) const;
   Contact make_contact(GeometryPair pair) const;
-  double pair_margin(Contact& contact, const StepContext& step) const;
+  /// [m] Within which the points of contact are looked for at step `now`.
+  double pair_margin(Contact& contact, const StepContext& step, std::uint64_t now) const;
   /// On a way that is known until something happens to it: in undamped flight, resting, or fixed.
   bool keeps_its_way(std::uint32_t slot) const;
   Vec3 acceleration_on_way(std::uint32_t slot) const;
-  bool is_clear(const Contact& contact) const;
-  /// Notes how long a pair that is far apart stays so.
-  void foresee_clearance(Contact& contact, double margin, double h) const;
+  /// If the ways of the two keep them farther apart than `margin` [m] for some steps from `now` on: notes until when.
+  bool leave_if_clear(const Contact& contact, double margin, std::uint64_t now);
 
   // flight_step.cpp: free bodies.
   bool aloft(std::uint32_t slot) const { return flight_state_[slot] == FlightState::aloft; }
   Motion motion_in_flight(std::uint32_t slot, std::uint64_t step) const;
+  /// At step `now`, which is that of motions_: the end of the step while boxes are updated, else its start.
+  Motion motion_at(std::uint32_t slot, std::uint64_t now) const {
+    return aloft(slot) ? motion_in_flight(slot, now) : motions_[slot];
+  }
   void advance_free(std::uint32_t slot, const StepContext& step);
   void follow_flight(std::uint32_t slot);
   void integrate_free(std::uint32_t slot, const StepContext& step);
@@ -279,11 +291,13 @@ class World {
   /// The same, of a body that was moved already, from `start`.
   void note_end(std::uint32_t slot, const Motion& start, const StepContext& step);
   /// At the end of a step: lets go of a body that meets nobody for some steps. False: it has to be visited.
-  bool try_lift(std::uint32_t slot);
-  bool lift(std::uint32_t slot, std::uint64_t now);
-  bool reach_ahead(std::uint32_t slot, std::uint64_t now, std::uint64_t until);
+  bool try_lift(std::uint32_t slot, const StepContext& step);
+  bool lift(std::uint32_t slot, std::uint64_t now, const StepContext& step);
+  /// Gives its geometries boxes that hold its way, if it is clear of all that these meet; of how many, or none.
+  std::optional<std::size_t> reach_ahead(std::uint32_t slot, std::uint64_t now, std::uint64_t until,
+                                         const StepContext& step);
   /// At the end of a step: new boxes for the bodies aloft whose boxes end.
-  void renew_flights();
+  void renew_flights(const StepContext& step);
   /// Aloft no more, but on its flight as before.
   void descend(std::uint32_t slot, std::uint64_t now);
   /// Off its flight: something acts on it, or moves it elsewhere.
@@ -465,6 +479,7 @@ class World {
 
   BroadPhase broad_phase_;
   ContactGraph contacts_;
+  ClearPairs clear_pairs_;
   std::vector<Tie> ties_;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> jointed_;  // slots, smaller first, ascending
   std::vector<ActivePush> pushes_;

@@ -242,5 +242,14 @@ TEST(ImpactStep, PairsThatTheirFlightsKeepApartAreNotLookedAtAndMoveTheSame) {
   EXPECT_LE(test::largest_displacement(skipping, looking), 1e-11);  // measured: 0
 }
 
+TEST(ImpactStep, BallsThatFallTogetherAreAloftThoughTheirBoxesOverlap) {
+  World world = test::elastic_666(3, 1e-3);
+  for (int i = 0; i < 400; ++i) world.step();  // the first meets the ground after 0.45 s
+  EXPECT_EQ(world.counters().impacts, 0u);
+  EXPECT_GE(world.report().pairs, 50u);
+  EXPECT_EQ(world.contacts().all().size(), 0u);
+  EXPECT_LE(world.counters().bodies_stepped, 27u * 20u);
+}
+
 }  // namespace
 }  // namespace tumble

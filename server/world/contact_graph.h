@@ -46,9 +46,10 @@ class ContactGraph {
   std::size_t insert_late(const std::vector<GeometryPair>& added, Make make) {
     const std::size_t before = contacts_.size();
     for (const GeometryPair pair : added) {
-      if (!find(pair)) contacts_.push_back(make(pair));
+      if (find(pair)) continue;
+      contacts_.push_back(make(pair));
+      ++late_;
     }
-    late_ += contacts_.size() - before;
     return contacts_.size() - before;
   }
   void settle();

@@ -98,8 +98,7 @@ class World {
   const ContactGraph& contacts() const { return contacts_; }
   const std::vector<Geometry>& geometries() const { return geometries_; }
   Pose geometry_pose(const Geometry& geometry) const;
-  /// For queries (query.h): which geometries are about some place.
-  /// Between steps every box holds its geometry where it is, and where it is going in the next step.
+  /// For queries (query.h): between steps every box holds its geometry where it is, and where it is going in the next step.
   const BroadPhase& broad_phase() const { return broad_phase_; }
   /// Rises whenever a body is created or destroyed: the catalogue's epoch.
   std::uint64_t model_epoch() const { return model_epoch_; }
@@ -211,7 +210,7 @@ class World {
     std::vector<std::uint32_t> members;  // movable slots, ascending
     std::vector<GeometryPair> struck;    // sorted
     std::vector<std::uint32_t>
-        inner;           // contacts among members, or with immovable bodies, that touch or strike
+        inner;           // contacts among members or with immovable bodies: touching or striking
     bool tired = false;  // a member has reached its bound of impacts
     bool has(std::uint32_t slot) const { return std::binary_search(members.begin(), members.end(), slot); }
     bool strikes(GeometryPair pair) const { return std::binary_search(struck.begin(), struck.end(), pair); }
@@ -236,9 +235,8 @@ class World {
   /// Takes the load off bodies that it would make non-finite, so that they don't take others with them.
   void contain_overloaded(const StepContext& step);
   void update_pairs(const StepContext& step);
-  /// Of the pairs found: those that their ways keep apart are no contacts.
+  /// Pairs that their ways keep apart are no contacts, until their time has come or a body leaves its way.
   void leave_clear_pairs(const StepContext& step);
-  /// Clear pairs whose time has come, or whose bodies left their ways, are pairs found again.
   void recall_clear_pairs();
   /// Replaces the pairs with a surface by pairs with those of its triangles that meet the other's fat box.
   void split_surface_pairs();
@@ -247,7 +245,6 @@ class World {
   /// Pairs of geometries with a new box, sorted.
   void find_pairs();
   void update_contacts(const StepContext& step);
-  /// Returns the margin [m] within which points were looked for.
   double update_contact(std::uint32_t index, const StepContext& step);
   void refresh_active();
   void build_islands(const StepContext& step);
@@ -262,12 +259,10 @@ class World {
 
   /// Puts the geometry, or puts it back, into the broad phase at its present place.
   void add_box(std::uint32_t index);
-  /// The same of every geometry of a body.
   void renew_boxes(std::uint32_t slot);
   /// Where the geometry, or a contact of it, can be while the body turns through a step of h.
   Aabb contact_bounds(const Geometry& geometry, double h) const;
   Contact make_contact(GeometryPair pair) const;
-  /// [m] Within which the points of contact are looked for at step `now`.
   double pair_margin(Contact& contact, const StepContext& step, std::uint64_t now) const;
   /// On a way that is known until something happens to it: in undamped flight, resting, or fixed.
   bool keeps_its_way(std::uint32_t slot) const;
@@ -296,7 +291,6 @@ class World {
   /// Gives its geometries boxes that hold its way, if it is clear of all that these meet; of how many, or none.
   std::optional<std::size_t> reach_ahead(std::uint32_t slot, std::uint64_t now, std::uint64_t until,
                                          const StepContext& step);
-  /// At the end of a step: new boxes for the bodies aloft whose boxes end.
   void renew_flights(const StepContext& step);
   /// Aloft no more, but on its flight as before.
   void descend(std::uint32_t slot, std::uint64_t now);

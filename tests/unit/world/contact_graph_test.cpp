@@ -1,4 +1,4 @@
-// Impulses follow their points from one manifold to the next.
+// Pairs are held once; impulses follow their points from one manifold to the next.
 #include "world/contact_graph.h"
 
 #include <gtest/gtest.h>
@@ -46,6 +46,24 @@ TEST(TransportImpulses, FollowNamesThenPlaces) {
   EXPECT_EQ(impulse[1], Vec3(0.5, 0, 2.0));
   EXPECT_EQ(impulse[2], Vec3::Zero());
   EXPECT_EQ(impulse[3], Vec3(0.5, 0, 1.0));
+}
+
+Contact contact_of(GeometryPair pair) {
+  Contact contact;
+  contact.pair = pair;
+  return contact;
+}
+
+TEST(ContactGraph, PairsThatComeLateMoreThanOnceAreHeldOnce) {
+  ContactGraph graph;
+  EXPECT_EQ(graph.insert({{5, 6}}, contact_of), 1u);
+  EXPECT_EQ(graph.insert_late({{1, 9}}, contact_of), 1u);
+  EXPECT_EQ(graph.insert_late({{0, 1}, {1, 9}, {5, 6}}, contact_of), 1u);
+  graph.settle();
+  ASSERT_EQ(graph.all().size(), 3u);
+  EXPECT_EQ(graph.all()[0].pair, (GeometryPair{0, 1}));
+  EXPECT_EQ(graph.all()[1].pair, (GeometryPair{1, 9}));
+  EXPECT_EQ(graph.all()[2].pair, (GeometryPair{5, 6}));
 }
 
 }  // namespace

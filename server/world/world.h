@@ -98,7 +98,7 @@ class World {
   const ContactGraph& contacts() const { return contacts_; }
   const std::vector<Geometry>& geometries() const { return geometries_; }
   Pose geometry_pose(const Geometry& geometry) const;
-  /// For queries (query.h): between steps every box holds its geometry where it is, and where it is going in the next step.
+  /// For queries: between steps every box holds its geometry where it is, and is going in the next step.
   const BroadPhase& broad_phase() const { return broad_phase_; }
   /// Rises whenever a body is created or destroyed: the catalogue's epoch.
   std::uint64_t model_epoch() const { return model_epoch_; }
@@ -209,9 +209,8 @@ class World {
   struct Blow {
     std::vector<std::uint32_t> members;  // movable slots, ascending
     std::vector<GeometryPair> struck;    // sorted
-    std::vector<std::uint32_t>
-        inner;           // contacts among members or with immovable bodies: touching or striking
-    bool tired = false;  // a member has reached its bound of impacts
+    std::vector<std::uint32_t> inner;    // contacts among members or with immovable bodies
+    bool tired = false;                  // a member has reached its bound of impacts
     bool has(std::uint32_t slot) const { return std::binary_search(members.begin(), members.end(), slot); }
     bool strikes(GeometryPair pair) const { return std::binary_search(struck.begin(), struck.end(), pair); }
   };

@@ -101,7 +101,7 @@ def latency(count):
             began = time.monotonic()
             answer = body.push(force=(0.001, 0, 0))
             index = body.description.id
-            world.wait_for(lambda: world._picture._step[index] > answer.step, 5.0)  # pylint: disable=protected-access
+            world.wait_for(lambda: world._picture._step[index] > answer.step, 30.0)  # pylint: disable=protected-access
             samples.append(time.monotonic() - began)
     return np.percentile(samples, 50), np.percentile(samples, 99)
 

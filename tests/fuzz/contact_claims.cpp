@@ -22,6 +22,8 @@ namespace {
 constexpr int kDirections = 20000;
 /// Of the size. The engine promises 1e-13; supports and poses here round too.
 constexpr double kTolerance = 1e-12;
+/// The same of cylinders, cones and ellipsoids, whose search ends within 1e-11 (contacts_accuracy_curved).
+constexpr double kCurvedTolerance = 2e-11;
 
 /// Directions spread evenly over the sphere: a Fibonacci spiral.
 std::vector<Vec3> make_directions() {
@@ -32,6 +34,11 @@ std::vector<Vec3> make_directions() {
     directions.push_back({r * std::cos(turn * i), r * std::sin(turn * i), z});
   }
   return directions;
+}
+
+bool is_curved(const Shape& shape) {
+  return std::holds_alternative<Cylinder>(shape) || std::holds_alternative<Cone>(shape) ||
+         std::holds_alternative<Ellipsoid>(shape);
 }
 
 bool is_endless(const Shape& shape) {
@@ -107,7 +114,8 @@ class Claims {
       radii += bounding_radius(*shape);
       smaller = std::min(smaller, bounding_radius(*shape));
     }
-    tolerance_ = kTolerance * (radii + X_AB_.p.norm()) + unevenness(pair.a) + unevenness(pair.b);
+    const double share = is_curved(pair.a) || is_curved(pair.b) ? kCurvedTolerance : kTolerance;
+    tolerance_ = share * (radii + X_AB_.p.norm()) + unevenness(pair.a) + unevenness(pair.b);
     clipping_ = 2.0 * ContactTolerance::of(2.0 * smaller).inside;
     if (!is_endless(pair.a) && !is_endless(pair.b)) distance_ = compute_distance(pair.a, pair.b, X_AB_).upper;
     separation_ = least_separation(manifold_);

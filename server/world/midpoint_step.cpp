@@ -31,11 +31,52 @@ constexpr double kMostParts = 32.0;
 constexpr double kStill = 1e-9;
 /// Of the speed before: sent back by as much, a point sticks all the way.
 constexpr double kSaturated = 1.0 - 1e-6;
-constexpr int kMostSlips = 24;
+/// Of the part: a slip that still has a tenth of its speed at both ends of so short a time jumps, and does not end.
+constexpr double kNarrow = 1e-2, kJump = 0.1;
+constexpr int kMostSlips = 16;
 
 bool turned(const Vec3& r, const Vec3& from) {
   return (r - from).cwiseAbs().maxCoeff() > kUnturned;
 }
+
+/// When a slip passes through zero: the Illinois method (Dowell, Jarratt 1971). Slips in [m/s], negative if sent back.
+class SlipBracket {
+ public:
+  SlipBracket(double whole, double start) : whole_(whole), start_(start), high_(whole) {}
+
+  void add(double h, double slip) {
+    const bool after = slip < 0.0;
+    (after ? high_ : low_) = h;
+    (after ? slip_high_ : slip_low_) = slip;
+    (after ? weight_high_ : weight_low_) = 1.0;
+    if (after == last_after_) (after ? weight_low_ : weight_high_) *= 0.5;
+    last_after_ = after;
+  }
+
+  bool jumps() const {
+    return high_ - low_ < kNarrow * whole_ && std::min(slip_low_, -slip_high_) > kJump * start_;
+  }
+
+  double next() const {
+    double h = 0.0;
+    if (slip_high_ > -start_ * kSaturated) {
+      const double before = weight_low_ * slip_low_, after = weight_high_ * slip_high_;
+      h = low_ + (high_ - low_) * before / (before - after);
+    } else if (low_ > 0.0) {  // it sticks already, which says nothing of when
+      h = low_ * start_ / (start_ - slip_low_);
+    } else {
+      h = 0.25 * high_;
+    }
+    return h > low_ && h < high_ ? h : 0.5 * (low_ + high_);
+  }
+
+ private:
+  double whole_, start_;
+  double low_ = 0.0, high_;
+  double slip_low_ = start_, slip_high_ = -start_;
+  double weight_low_ = 1.0, weight_high_ = 1.0;
+  bool last_after_ = true;
+};
 
 }  // namespace
 
@@ -127,30 +168,17 @@ bool World::try_midpoint(std::size_t island, const StepContext& part, Midpoint& 
 
 /// Shortens the part to where the first of the slides that would end in it does. False: it was not found.
 bool World::shorten_to_end_of_slide(std::size_t island, StepContext& part, Midpoint& way) {
-  double low = 0.0, high = part.h, slip_low = way.slip_before, slip_high = 0.0;
-  const double start = slip_low;
-  bool bracketed = false;
+  SlipBracket bracket(part.h, way.slip_before);
   part.h *= 0.5;
-  for (int trial = 0; trial < kMostSlips; ++trial) {
+  for (int trial = 0; trial < kMostSlips && !bracket.jumps(); ++trial) {
     restore_island(island, scratch_.part_start);
     if (!try_midpoint(island, part, way)) return false;
-    const double slip = way.slip_after;
-    if (std::abs(slip) <= kStill) {
+    if (std::abs(way.slip_after) <= kStill) {
       way.ends_slide = true;
       return true;
     }
-    if (slip > 0.0) {
-      low = part.h;
-      slip_low = slip;
-    } else {
-      high = part.h;
-      slip_high = slip;
-      bracketed = slip > -start * kSaturated;  // else it sticks already, which says nothing of when
-    }
-    const double next = bracketed   ? low + (high - low) * slip_low / (slip_low - slip_high)
-                        : low > 0.0 ? low * start / (start - slip_low)
-                                    : 0.5 * high;
-    part.h = next > low && next < high ? next : 0.5 * (low + high);
+    bracket.add(part.h, way.slip_after);
+    part.h = bracket.next();
   }
   return false;
 }

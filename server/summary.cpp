@@ -54,6 +54,7 @@ Json counters_json(const Counters& c) {
       {"landings", c.landings},
       {"cuts_capped", c.cuts_capped},
       {"islands_by_midpoint", c.islands_by_midpoint},
+      {"joint_passes", c.joint_passes},
       {"taut_parts", c.taut_parts},
       {"impacts_ended", c.impacts_ended},
       {"impacts_clamped", c.impacts_clamped},

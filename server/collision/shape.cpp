@@ -171,7 +171,7 @@ std::size_t furthest_vertex(const ConvexHull& hull, const Vec3& d) {
   return best;
 }
 
-struct Support {
+struct SupportPoint {
   const Vec3& d;
 
   Vec3 operator()(const HalfSpace&) const { return Vec3::Zero(); }
@@ -223,7 +223,7 @@ double bounding_radius(const Shape& shape) {
   return std::visit(Radius{}, shape);
 }
 Vec3 support(const Shape& shape, const Vec3& d_S) {
-  return std::visit(Support{d_S}, shape);
+  return std::visit(SupportPoint{d_S}, shape);
 }
 
 double separation_along(const Shape& a, const Shape& b, const Mat3& R_AB, const Vec3& p_AB, const Vec3& n_A) {

@@ -18,7 +18,6 @@ namespace {
 constexpr double kRigidities[] = {1e6, 1e4, 1e8};
 constexpr int kHalvings = 8;
 constexpr int kMaxStalls = 3;
-constexpr double kFrictionless = 1e-6;
 
 struct Law {
   Coupling joins;

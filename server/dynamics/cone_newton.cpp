@@ -16,9 +16,8 @@ constexpr double kSoftest = 1e2, kStiffest = 1e6;
 constexpr int kQuick = 4;
 constexpr int kMostSteps = 8;  // of one problem
 constexpr int kMostCompromiseSteps = 30;
-constexpr int kHalvings = 8;
+constexpr int kMostHalvings = 8;
 constexpr double kSolved = 1e-11;  // [m/s] mean defect of a problem
-constexpr double kFrictionless = 1e-6;
 
 struct Cone {
   Coupling joins;
@@ -166,7 +165,7 @@ bool ConeNewton::step() {
   dv_ = defect_;
   system_.solve(dv_);
   double share = 1.0;
-  for (int i = 0; i < kHalvings; ++i, share *= 0.5) {
+  for (int i = 0; i < kMostHalvings; ++i, share *= 0.5) {
     for (std::size_t k = 0; k < v_.size(); ++k) trial_[k] = v_[k] + share * dv_[k];
     if (update_defect(trial_, false) < (1.0 - 0.1 * share) * before) {
       std::swap(v_, trial_);

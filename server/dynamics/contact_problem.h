@@ -25,6 +25,10 @@ struct SolverBody {
   Vec3 turn = Vec3::Zero();   ///< Out: extra rotation vector [rad], world axes, applied after the drift.
 };
 
+/// Contacts with smaller coefficients have no friction for the exact solvers: dividing by them would drown the normal
+/// condition. Of the sweeping solvers each takes them as they are.
+constexpr double kFrictionless = 1e-6;
+
 struct PointContact {
   std::uint32_t a, b;  ///< Indices into `bodies`.
   Vec3 n, t1, t2;      ///< Right-handed: t2 = n x t1.
@@ -120,6 +124,8 @@ struct BoundSettings {
   double push_speed;     ///< [m/s] upper limit of that push.
 };
 void prepare(ContactProblem& problem, const BoundSettings& settings);
+/// Of a row whose arms have changed since.
+void update_mass(const ContactProblem& problem, ScalarRow& row);
 
 /// `impulse` [N s] on B at rB, its opposite on A at rA.
 void apply_impulse(SolverBody& A, SolverBody& B, const Vec3& rA, const Vec3& rB, const Vec3& impulse);

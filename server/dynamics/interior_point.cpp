@@ -16,8 +16,6 @@ constexpr int kMaxIterations = 40;  // a wall of 210 bodies needs 7, a mass rati
 constexpr int kMaxStalls = 20;
 constexpr double kLongStep = 0.3;  // takes so much of the defects along
 constexpr double kToBoundary = 0.99;
-/// Smaller coefficients are left to the sweeps that follow: dividing by them would drown the normal condition.
-constexpr double kFrictionless = 1e-6;
 /// Rigid two-sided rows are springs whose rest length follows the impulse (method of multipliers): this many times
 /// stiffer than the row's own mass, so each iteration leaves a millionth of the error.
 constexpr double kTieStiffness = 1e6;

@@ -41,6 +41,7 @@ void for_each_option(OptionsType& options, Visit&& visit) {
   visit("midpoint_bodies", options.midpoint_bodies);
   visit("midpoint_turn", options.midpoint_turn);
   visit("taut_parts", options.taut_parts);
+  visit("joint_passes", options.joint_passes);
   visit("work_rate", options.work_rate);
   visit("warm_start", options.warm_start);
   visit("rest_residual", options.rest.residual);

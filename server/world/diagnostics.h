@@ -26,9 +26,10 @@ struct Counters {
   std::uint64_t slides_ended = 0;                      ///< Within a step, at times of their own.
   std::uint64_t overlaps_removed = 0;  ///< Islands whose bodies were shifted apart at the end of their step.
   std::uint64_t overlap_steps = 0;     ///< Factorizations for that.
+  std::uint64_t joint_passes = 0;      ///< Further solutions with arms of joints that the ones before moved.
   std::uint64_t taut_parts = 0;        ///< Parts of steps of islands whose joints pull hard.
-  std::uint64_t landings = 0;             ///< Contacts that closed without restitution, likewise.
-  std::uint64_t cuts_capped = 0;          ///< Steps of islands that were cut as often as they may be.
+  std::uint64_t landings = 0;          ///< Contacts that closed without restitution, likewise.
+  std::uint64_t cuts_capped = 0;       ///< Steps of islands that were cut as often as they may be.
   std::uint64_t islands_by_midpoint = 0;  ///< Parts of steps with the forces of their middle.
   std::uint64_t impacts = 0;              ///< Pairs that struck.
   std::uint64_t impacts_capped = 0;       ///< Bodies and islands whose impacts reached the bound of a step.

@@ -67,22 +67,36 @@ void World::advance_connected(std::size_t island, const StepContext& step) {
     const Advance advance =
         may_cut && advance_landing(island, rest) ? Advance::part : advance_until_cut(island, rest, may_cut);
     if (advance == Advance::whole) return;
-    if (advance == Advance::none) return move_bodies(rest);
+    if (advance == Advance::none) {
+      move_bodies(rest);
+      return hold_joints(island, rest);
+    }
     counters_.cuts_capped += ++cuts == options_.max_cuts;
   }
 }
 
 void World::solve_problem(const StepContext& step) {
+  scratch_.shifted = 0.0;
+  if (solve_velocities(step)) shift_apart(step);
+  store_impulses();
+}
+
+/// True if to rounding.
+bool World::solve_velocities(const StepContext& step) {
   ContactProblem& problem = scratch_.problem;
   SolverSettings settings = step.solver_settings;
   if (options_.work_rate > 0.0) settings.work_left = work_saved_;
-  const SolverReport solved = step.solve(problem, settings);
-  count_solution(solved);
-  step_residual_ = std::max(step_residual_, solved.residual);
-  scratch_.residual = solved.residual;
-  scratch_.shifted = 0.0;
-  if (solved.exact) shift_apart(step);
-  store_impulses();
+  const bool refines = refines_joints(step);
+  if (refines) scratch_.free_bodies = problem.bodies;
+  for (int pass = 1;; ++pass) {
+    const SolverReport solved = step.solve(problem, settings);
+    count_solution(solved);
+    step_residual_ = std::max(step_residual_, solved.residual);
+    scratch_.residual = solved.residual;
+    const bool last = !refines || !solved.exact || pass == options_.joint_passes;
+    if (last || !update_joint_arms(step, scratch_.free_bodies)) return solved.exact;
+    ++counters_.joint_passes;
+  }
 }
 
 void World::count_solution(const SolverReport& report) {
@@ -219,10 +233,8 @@ void World::add_tie_rows(std::uint32_t tie_index, const StepContext& step) {
   const SolverBody& A = scratch_.problem.bodies[row.a];
   const SolverBody& B = scratch_.problem.bodies[row.b];
   if (const Joint* joint = std::get_if<Joint>(&tie.law)) {
-    // A velocity that closes gaps keeps those of calm joints right to second order, and shakes taut ones, which go in parts.
-    const BoundSettings& bounds = h < options_.time_step ? step.bounds : options_.bounds;
     for (std::uint32_t i = 0; i < joint->rows; ++i)
-      add_row(make_joint_row(joint->held[i], row.a, row.b, A, B, h, bounds), tie_index, i);
+      add_row(make_joint_row(joint->held[i], row.a, row.b, A, B, h, step.bounds), tie_index, i);
     return;
   }
   row.rA = A.q * tie.pA;

@@ -67,6 +67,7 @@ std::string check_options(const Options& options) {
       {"midpoint turn", options.midpoint_turn, 1e-4, 10.0},
       {"max cuts", static_cast<double>(options.max_cuts), 0.0, 1000.0},
       {"taut parts", static_cast<double>(options.taut_parts), 1.0, 1000.0},
+      {"joint passes", static_cast<double>(options.joint_passes), 1.0, 1000.0},
       {"work rate", options.work_rate, 0.0, 1e12},
       {"max sweeps", static_cast<double>(options.solver_settings.max_sweeps), 1.0, 1e6},
       {"tolerance", options.solver_settings.tolerance, 0.0, 1.0},

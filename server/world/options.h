@@ -56,6 +56,9 @@ struct Options {
   /// Most parts into which the step of an island is cut whose joints or ropes pull so hard that what they hold swings by more
   /// than a radian in a step; uncut it would gain energy without bound. 1: never.
   int taut_parts = 64;
+  /// Most times that an island with joints is solved for in a step, each with the arms that the solution before has in the
+  /// middle; then the velocities are projected on what the joints allow. 1: by the forces alone and without projection.
+  int joint_passes = 12;
   bool warm_start = true;  ///< Off: every solve starts from zero impulses.
   /// Off: patterns of factorization are made anew for every solve, with the same results.
   bool keep_patterns = true;

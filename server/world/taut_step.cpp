@@ -10,9 +10,9 @@
 namespace tumble {
 namespace {
 
-/// [rad] of the swing, or turn, in a part: as many parts as keep to it, and again if it turned out to be twice as much. Half
-/// of it costs twice as much and gains nothing (chains and bridge of tests/stability).
-constexpr double kPhase = 1.0, kMostPhase = 2.0;
+/// [rad] of the swing, or turn, in a part: as many parts as keep to it, and again if it turned out to be twice as much. A
+/// pass of joint_step.cpp leaves a quarter of the square of it; with a radian chains at 60 Hz gain energy (tests/stability).
+constexpr double kPhase = 0.5, kMostPhase = 1.0;
 constexpr double kRounding = 1e-9;  // of a rest that is meant to be a whole number of parts
 
 /// k tr(I^-1 (r.n - r n^T)): what a pull of n at r adds to the sum of the squares of the swings [1/s^2].
@@ -93,6 +93,7 @@ void World::advance_taut(std::size_t island, const StepContext& step) {
     ++counters_.taut_parts;
     note_opening();
     move_bodies(part);
+    hold_joints(island, part);
     rest.begin += part.h;
     rest.h = parts > 1.0 ? rest.h - part.h : 0.0;
   }

@@ -182,6 +182,7 @@ class World {
     std::vector<std::vector<std::uint32_t>> contacts_of;  // by slot; filled at the first impact of a step
     bool contacts_indexed = false;
     std::vector<std::pair<std::uint32_t, Motion>> held;  // slots that pushes would carry beyond all numbers
+    std::vector<SolverBody> free_bodies;                 // before joints are solved for
     std::vector<double> opened;                          // by contact of a taut island [m]
     std::vector<double> swing_square;                    // by body of the problem [1/s^2]
     double residual = 0.0;                               // [m/s] of the problem's solution
@@ -310,6 +311,7 @@ class World {
   void begin_problem(double h);
   void end_problem();
   void solve_problem(const StepContext& step);
+  bool solve_velocities(const StepContext& step);
   void count_solution(const SolverReport& report);
   /// What overlaps at the start of the step, after its velocities are solved.
   void shift_apart(const StepContext& step);
@@ -366,6 +368,11 @@ class World {
   /// Takes from the velocities what the points that are pressed would approach, part or, where they stick, slide with:
   /// rounding, and what their arms turned since they were solved.
   void hold_touches(std::size_t island, const std::vector<Touch>& touches, const StepContext& part);
+  // joint_step.cpp: joints by their arms in the middle of the step.
+  bool refines_joints(const StepContext& step) const;
+  bool update_joint_arms(const StepContext& step, const std::vector<SolverBody>& free);
+  void hold_joints(std::size_t island, const StepContext& part);
+
   // taut_step.cpp: islands whose joints pull hard, in parts of the step.
   double swing_phase();
   /// The solved island would swing too far in one step.

@@ -12,21 +12,6 @@ using namespace test;
 constexpr const char* kSolvers[] = {"course_impulse", "pgs",   "nncg",     "soft_step", "alm_newton",
                                     "interior_point", "exact", "automatic"};
 
-struct Momentum {
-  Vec3 linear = Vec3::Zero(), angular = Vec3::Zero();  // [N s], [N m s] about the origin
-};
-
-Momentum momentum(const ContactProblem& problem) {
-  Momentum sum;
-  for (const SolverBody& body : problem.bodies) {
-    if (body.inv_mass == 0.0) continue;
-    const Vec3 p = body.v / body.inv_mass;
-    sum.linear += p;
-    sum.angular += body.x.cross(p) + body.inv_I_W.inverse() * body.w;
-  }
-  return sum;
-}
-
 /// Bodies that touch each other alone, some sliding, some overlapping; their contacts meet at one point.
 ContactProblem isolated_problem(std::uint32_t seed) {
   ContactProblem problem = random_problem(seed, 12, 20);

@@ -138,13 +138,11 @@ void prepare(ContactProblem& problem, const BoundSettings& settings) {
   }
   if (settings.push_fraction == 0.0) set_bounds_by_deepest(problem);
   for (Turning& turning : problem.turnings) update_masses(problem, turning);
-  for (ScalarRow& row : problem.rows) update_mass(problem, row);
-}
-
-void update_mass(const ContactProblem& problem, ScalarRow& row) {
-  const double k = inverse_mass_along(problem.bodies[row.a], row.rA, row.n, row.n) +
-                   inverse_mass_along(problem.bodies[row.b], row.rB, row.n, row.n);
-  row.mass = k > 0.0 ? 1.0 / k : 0.0;
+  for (ScalarRow& row : problem.rows) {
+    const double k = inverse_mass_along(problem.bodies[row.a], row.rA, row.n, row.n) +
+                     inverse_mass_along(problem.bodies[row.b], row.rB, row.n, row.n);
+    row.mass = k > 0.0 ? 1.0 / k : 0.0;
+  }
 }
 
 void apply_impulse(SolverBody& A, SolverBody& B, const Vec3& rA, const Vec3& rB, const Vec3& impulse) {

@@ -124,8 +124,6 @@ struct BoundSettings {
   double push_speed;     ///< [m/s] upper limit of that push.
 };
 void prepare(ContactProblem& problem, const BoundSettings& settings);
-/// Of a row whose arms have changed since.
-void update_mass(const ContactProblem& problem, ScalarRow& row);
 
 /// `impulse` [N s] on B at rB, its opposite on A at rA.
 void apply_impulse(SolverBody& A, SolverBody& B, const Vec3& rA, const Vec3& rB, const Vec3& impulse);

@@ -37,8 +37,9 @@ ScalarRow make_joint_row(const HeldPoint& held, std::uint32_t a, std::uint32_t b
                          const SolverBody& B, double h, const BoundSettings& settings) {
   ScalarRow row = make_joint_row(held, a, b, A, B);
   const Vec3 rA = row.rA, rB = row.rB;
-  row.rA = exp_map(0.25 * h * (A.w0 + A.w)) * rA;
-  row.rB = exp_map(0.25 * h * (B.w0 + B.w)) * rB;
+  // Mean of both ends, not the arm in the middle: what turns steadily then has the same speed at the end.
+  row.rA = 0.5 * (rA + exp_map(0.5 * h * (A.w0 + A.w)) * rA);
+  row.rB = 0.5 * (rB + exp_map(0.5 * h * (B.w0 + B.w)) * rB);
   row.gap = row.n.dot(B.x + rB - A.x - rA);
   if (settings.push_fraction > 0.0)
     row.closing = -std::clamp(row.gap / h, -settings.push_speed, settings.push_speed);

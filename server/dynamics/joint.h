@@ -31,8 +31,8 @@ Joint make_fixed_joint(const Vec3& pA, const Vec3& pB, const Quat& q_AB, double 
 ScalarRow make_joint_row(const HeldPoint& held, std::uint32_t a, std::uint32_t b, const SolverBody& A,
                          const SolverBody& B);
 
-/// One row of a joint over a step h. With the arms where the velocities of A and B have them in the middle of the step: a body that turns about its
-/// joint keeps its distance for bodies that move with the average velocity, and the joint does no work. A gap left by
+/// One row of a joint over a step h. With the mean of the arms at its start and where the velocities of A and B have them
+/// at its end: a body that turns about its joint keeps its distance for bodies that move with the average velocity, and the joint does no work. A gap left by
 /// rounding or by the scene closes with gap/h, at most settings.push_speed; not by a velocity
 /// if settings.push_fraction is 0: overlap.h closes it.
 ScalarRow make_joint_row(const HeldPoint& held, std::uint32_t a, std::uint32_t b, const SolverBody& A,

@@ -180,6 +180,7 @@ std::uint32_t World::problem_body(std::uint32_t slot, double h) {
   AfterForces& after = scratch_.after_forces.emplace_back();
   velocities_after_forces(slot, h, body.v, after.L);
   after.I_W = world_inertia(mass.I, mass.q_BP, motion.q);
+  after.w0 = motion.w;
   body.w = body.inv_I_W * after.L;
   return index;
 }
@@ -344,7 +345,7 @@ VelocityPath World::velocity_path(std::uint32_t i, double share) const {
   if (share == 0.0) return path;
   const Motion& motion = motions_[scratch_.problem_slot[i]];
   path.v0 = solved.v0;
-  path.L0 = motion.L + after.I_W * (solved.w0 - motion.w);
+  path.L0 = motion.L + after.I_W * (solved.w0 - after.w0);
   if (share < 1.0) {
     path.v0 = path.v1 + share * (path.v0 - path.v1);
     path.L0 = path.L1 + share * (path.L0 - path.L1);
@@ -397,7 +398,11 @@ double World::turning_gain(double share, const StepContext& step) const {
     const VelocityPath path = velocity_path(i, share);
     Motion moved = motions_[slot];
     step.integrate_in_contact(mass, path, step.h, moved);
-    gain += 0.5 * path.L1.dot(moved.w - scratch_.problem.bodies[i].inv_I_W * path.L1);
+    const Mat3& inv_I_W = scratch_.problem.bodies[i].inv_I_W;
+    gain += 0.5 * path.L1.dot(moved.w - inv_I_W * path.L1);
+    const Motion& start = motions_[scratch_.problem_slot[i]];
+    gain -=
+        0.5 * start.L.dot(start.w - scratch_.after_forces[i].w0);  // inertia of the middle: joint_step.cpp
   }
   return gain;
 }

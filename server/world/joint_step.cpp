@@ -1,18 +1,19 @@
-// Joints of second order that do no work. Their arms are those of the middle of the step, turned by half of what the
-// solution turns the bodies, so the problem is solved again with them until they stay: then they hold the mean velocity, and
-// what they do to the energy is what rounding does. Where the step ends the velocities are projected on what the joints
-// allow there, which takes a little energy and never gives any (projection methods: Hairer, Lubich, Wanner, Geometric
-// Numerical Integration, section VII.2). World frame.
+// Joints of second order that do no work. Their arms are the mean of those at both ends of the step, and moments of inertia
+// those of its middle, as the solution turns the bodies; so the problem is solved again with them until they stay, and the
+// joints hold the mean velocities. Where the step ends their gaps are closed and the velocities projected on what they
+// allow there, which takes a little energy and never gives any (Hairer, Lubich, Wanner, Geometric Numerical Integration:
+// the implicit midpoint rule, and the projection methods of chapter IV.4). World frame.
 #include <algorithm>
 #include <cmath>
 
+#include "math/rotation.h"
 #include "world/world.h"
 
 namespace tumble {
 namespace {
 
-/// [m] by which an arm may still move.
-constexpr double kArmStays = 1e-11;
+/// [m, rad] by which an arm or what a body turns may still change.
+constexpr double kStays = 1e-11;
 /// [m/s] with which joints may part or close where a step ends.
 constexpr double kJointHeld = 1e-12;
 
@@ -25,10 +26,13 @@ bool World::refines_joints(const StepContext& step) const {
                      [](const ScalarRow& row) { return row.is_two_sided() && !row.is_soft(); });
 }
 
-/// Arms as the solved velocities have them in the middle, velocities as they were. False: no arm has moved.
-bool World::update_joint_arms(const StepContext& step, const std::vector<SolverBody>& free) {
+/// Moments of inertia and arms as the solved velocities have them in the middle, velocities as they were, held so that their
+/// mean is. False: nothing has moved.
+bool World::update_joint_arms(const StepContext& step, std::vector<SolverBody>& free) {
   ContactProblem& problem = scratch_.problem;
   double moved = 0.0;
+  for (std::uint32_t i = 0; i < scratch_.problem_movable; ++i)
+    moved = std::max(moved, step.h * turn_inertia(i, step.h, free[i]));
   for (std::size_t i = 0; i < problem.rows.size(); ++i) {
     ScalarRow& row = problem.rows[i];
     const Scratch::RowSource source = scratch_.row_source[i];
@@ -39,16 +43,52 @@ bool World::update_joint_arms(const StepContext& step, const std::vector<SolverB
     moved =
         std::max({moved, (now.rA - row.rA).cwiseAbs().maxCoeff(), (now.rB - row.rB).cwiseAbs().maxCoeff()});
     now.lambda = row.lambda;
+    now.bound = -now.n.dot(relative_start_velocity(free[row.a], free[row.b], now.rA, now.rB));
     row = now;
-    update_mass(problem, row);
   }
-  if (moved <= kArmStays) return false;
+  if (moved <= kStays) return false;
   problem.bodies = free;
+  prepare(problem, step.bounds);
   return true;
+}
+
+/// Angular momenta stay, so that the mean angular velocity is that of the mean momentum in the middle. Returns by how much
+/// that of the start changes [rad/s].
+double World::turn_inertia(std::uint32_t i, double h, SolverBody& free) {
+  const SolverBody& solved = scratch_.problem.bodies[i];
+  const std::uint32_t slot = scratch_.problem_slot[i];
+  const MassProperties& mass = masses_[slot];
+  AfterForces& after = scratch_.after_forces[i];
+  const Vec3 L0 = after.I_W * free.w0, L = after.I_W * free.w, w0 = free.w0;
+  const Quat middle = normalized(exp_map(0.25 * h * (solved.w0 + solved.w)) * free.q);
+  free.inv_I_W = world_inertia(mass.inv_I, mass.q_BP, middle);
+  after.I_W = world_inertia(mass.I, mass.q_BP, middle);
+  free.w0 = free.inv_I_W * L0;
+  free.w = free.inv_I_W * L;
+  after.w0 = free.inv_I_W * motions_[slot].L;
+  return (free.w0 - w0).cwiseAbs().maxCoeff();
 }
 
 void World::hold_joints(std::size_t island, const StepContext& part) {
   if (!refines_joints(part)) return;
+  build_joint_problem(island, part);
+  if (close_joints(part)) build_joint_problem(island, part);
+  ContactProblem& problem = scratch_.problem;
+  double fastest = 0.0;
+  for (const ScalarRow& row : problem.rows) {
+    const Vec3 u = relative_velocity(problem.bodies[row.a], problem.bodies[row.b], row.rA, row.rB);
+    fastest = std::max(fastest, std::abs(row.n.dot(u)));
+  }
+  if (fastest <= kJointHeld) return;
+  SolverSettings settings = part.solver_settings;
+  settings.tolerance = std::min(settings.tolerance, kJointHeld);
+  const SolverReport report = part.solve(problem, settings);
+  count_solution(report);
+  if (report.exact) store_blow();
+}
+
+/// The joints of the island alone, as they are now.
+void World::build_joint_problem(std::size_t island, const StepContext& part) {
   const Islands& islands = scratch_.islands;
   const auto contact_count = static_cast<std::uint32_t>(contacts_.all().size());
   StepContext instant = part;
@@ -64,19 +104,24 @@ void World::hold_joints(std::size_t island, const StepContext& part) {
   end_problem();
   ContactProblem& problem = scratch_.problem;
   problem.h = options_.time_step;
-  double fastest = 0.0;
-  for (ScalarRow& row : problem.rows) {
-    row.lambda = 0.0;
-    const Vec3 u = relative_velocity(problem.bodies[row.a], problem.bodies[row.b], row.rA, row.rB);
-    fastest = std::max(fastest, std::abs(row.n.dot(u)));
-  }
-  if (fastest <= kJointHeld) return;
+  for (ScalarRow& row : problem.rows) row.lambda = 0.0;
   prepare(problem, part.bounds);
-  SolverSettings settings = part.solver_settings;
-  settings.tolerance = std::min(settings.tolerance, kJointHeld);
-  const SolverReport report = part.solve(problem, settings);
-  count_solution(report);
-  if (report.exact) store_blow();
+}
+
+/// Takes the gaps of the joints back, without a velocity. False: there are none.
+bool World::close_joints(const StepContext& part) {
+  shift_apart(part);
+  if (scratch_.shifted == 0.0) return false;
+  count_shifts();
+  for (std::uint32_t i = 0; i < scratch_.problem_movable; ++i) {
+    const std::uint32_t slot = scratch_.problem_slot[i];
+    const SolverBody& body = scratch_.problem.bodies[i];
+    Motion& motion = motions_[slot];
+    motion.x += body.shift;
+    motion.q = normalized(exp_map(body.turn) * motion.q);
+    motion.w = angular_velocity(masses_[slot], motion.q, motion.L);
+  }
+  return true;
 }
 
 }  // namespace tumble

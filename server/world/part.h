@@ -1,5 +1,5 @@
-// Parts of an island's step: what is noted of it to take a trial back, to find its points of contact again once the bodies
-// have moved, and to move it by the forces of the middle of a part. World frame.
+// A step or a part of it, and what is noted of an island to take a trial back, to find its points of contact again once the
+// bodies have moved, and to move it by the forces of the middle of a part. World frame.
 #pragma once
 
 #include <array>
@@ -9,13 +9,30 @@
 #include "collision/manifold.h"
 #include "dynamics/contact_problem.h"
 #include "dynamics/integrator.h"
+#include "dynamics/solver.h"
 
 namespace tumble {
+
+/// The options of a step made ready, and which part of it is meant.
+struct StepContext {
+  double h;  // [s]
+  IntegrateFunction integrate;
+  IntegrateFunction integrate_in_contact;
+  SolveFunction solve;
+  SolverSettings solver_settings;
+  BoundSettings bounds;
+  double whole = h;            // [s] of the step, where this is a part of it
+  double begin = 0.0;          // [s] of this part of the step
+  bool impact_events = false;  // times of impact are found
+  bool ways_only = false;      // bodies get a trajectory through the step instead of being moved at once
+  bool airborne = false;       // open contacts are left out of the problem: they do not close in this part
+};
 
 /// Of a movable body of a problem: what forces alone make of its momentum, and its inertia in W.
 struct AfterForces {
   Vec3 L;
   Mat3 I_W;
+  Vec3 w0;  ///< Of the momentum at the start of the step, by this inertia.
 };
 
 /// Where a row of a problem comes from: a contact and one of its points.

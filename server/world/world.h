@@ -192,20 +192,6 @@ class World {
     double impulse_share = 1.0;         // of a whole step's impulses that the problem's are
     std::uint32_t problem_movable = 0;  // the first bodies of the problem; the rest are immovable partners
   };
-  struct StepContext {
-    double h;
-    IntegrateFunction integrate;
-    IntegrateFunction integrate_in_contact;
-    SolveFunction solve;
-    SolverSettings solver_settings;
-    BoundSettings bounds;
-    double whole = h;            // [s] of the step, where this is a part of it
-    double begin = 0.0;          // [s] of this part of the step
-    bool impact_events = false;  // times of impact are found
-    bool ways_only = false;      // bodies get a trajectory through the step instead of being moved at once
-    bool airborne = false;       // open contacts are left out of the problem: they do not close in this part
-  };
-
   /// What takes part in one impact: bodies that act on each other through contacts and ties, and the pairs that strike.
   struct Blow {
     std::vector<std::uint32_t> members;  // movable slots, ascending
@@ -370,8 +356,11 @@ class World {
   void hold_touches(std::size_t island, const std::vector<Touch>& touches, const StepContext& part);
   // joint_step.cpp: joints by their arms in the middle of the step.
   bool refines_joints(const StepContext& step) const;
-  bool update_joint_arms(const StepContext& step, const std::vector<SolverBody>& free);
+  bool update_joint_arms(const StepContext& step, std::vector<SolverBody>& free);
+  double turn_inertia(std::uint32_t problem_body, double h, SolverBody& free);
   void hold_joints(std::size_t island, const StepContext& part);
+  void build_joint_problem(std::size_t island, const StepContext& part);
+  bool close_joints(const StepContext& part);
 
   // taut_step.cpp: islands whose joints pull hard, in parts of the step.
   double swing_phase();

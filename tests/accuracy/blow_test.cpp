@@ -14,7 +14,7 @@ TEST(Blow, ASuperballOnAHeavyBallLeavesWithTheClosedForm) {
   // M = 100 m falls with m on top, `gap` behind it, both elastic: M turns round, then m meets it and both are reflected
   // about their mean velocity.
   const Material elastic{.friction = 0.0, .restitution = 1.0};
-  for (const double h : kImpactSteps) {
+  for (const double h : kStepLengths) {
     for (const double gap : {0.0, 1e-9}) {
       World world(with_step(h));
       world.create_body(ground(elastic));
@@ -35,7 +35,7 @@ TEST(Blow, ASuperballOnAHeavyBallLeavesWithTheClosedForm) {
 }
 
 TEST(Blow, ABreakOfFifteenBallsIsSymmetricAndKeepsMomentumAndEnergy) {
-  for (const double h : kImpactSteps) {
+  for (const double h : kStepLengths) {
     World world = billiard_break(with_step(h), 0.0);
     const Conserved before = world.compute_conserved();
     while (world.time() < 0.3) world.step();
@@ -61,7 +61,7 @@ TEST(Blow, TheCueBallFollowsOrComesBackWithTwoSeventhsOfItsSpin) {
   // Head-on against an equal ball the cue ball keeps its spin and loses its speed; the cloth turns the spin into
   // v = 2 r w / 7, since the angular momentum about the point of contact stays.
   const double r = 0.0286;
-  for (const double h : kImpactSteps) {
+  for (const double h : kStepLengths) {
     for (const double spin : {200.0, -150.0}) {
       Options options = with_step(h);
       options.solver_settings.tolerance = 1e-14;  // what is left of a speed adds up to depth, a lever of spin
@@ -87,7 +87,7 @@ TEST(Blow, TheCueBallFollowsOrComesBackWithTwoSeventhsOfItsSpin) {
 
 TEST(Blow, AnObliqueSphereSticksOrSlidesAsTheClosedFormSays) {
   // Solid sphere, e, mu, approach v_n, slip s = v_t - r w: it slides if mu (1 + e) v_n < 2 s / 7, else it rolls off.
-  for (const double h : kImpactSteps) {
+  for (const double h : kStepLengths) {
     for (const double mu : {0.05, 0.1, 0.3, 1.0}) {
       const double e = 0.7, r = 0.1, vn = 3.0, vt = 2.0, w = -10.0;
       World world(weightless(h));
@@ -108,7 +108,7 @@ TEST(Blow, AnObliqueSphereSticksOrSlidesAsTheClosedFormSays) {
 
 TEST(Blow, NothingTunnels) {
   // 1 km/s against a wall of 1 mm: at 1/60 s the way of one step is 17000 times its thickness.
-  for (const double h : kImpactSteps) {
+  for (const double h : kStepLengths) {
     for (const double restitution : {0.0, 1.0}) {
       for (const Shape& shape : {Shape(Sphere{0.01}), Shape(Box{Vec3(0.01, 0.02, 0.03)})}) {
         const Material material{.friction = 0.0, .restitution = restitution};
@@ -136,7 +136,7 @@ TEST(Blow, NothingTunnels) {
 
 TEST(Blow, AFastBodyPassesBesideAWall) {
   // A bound along the line of nearest approach would stop it in the air.
-  for (const double h : kImpactSteps) {
+  for (const double h : kStepLengths) {
     World world(weightless(h));
     BodyDefinition wall = body("wall", Box{Vec3(0.0005, 1, 1)}, Vec3(20.0, 0, 0));
     wall.type = BodyType::fixed;

@@ -71,7 +71,7 @@ TEST(Energy, InelasticContactNeverGivesAny) {
   for (const Accuracy accuracy : {Accuracy::balanced, Accuracy::exact}) {
     for (std::uint64_t seed = 0; seed < 60; ++seed) {
       Dice dice(1000 + seed);
-      Options options = with_step(kImpactSteps[seed % 3]);
+      Options options = with_step(kStepLengths[seed % 3]);
       set_accuracy(options, accuracy);
       World world = random_scene(seed, options, 1.2 * dice());
       const double allowed = allowed_gain(world);

@@ -15,7 +15,7 @@ namespace {
 using namespace test;
 
 TEST(Impact, AnElasticBallKeepsHeightAndEnergyForTenSeconds) {
-  for (const double h : kImpactSteps) {
+  for (const double h : kStepLengths) {
     const Material elastic{.friction = 0.0, .restitution = 1.0};
     World world(with_step(h));
     world.create_body(ground(elastic));
@@ -35,7 +35,7 @@ TEST(Impact, AnElasticBallKeepsHeightAndEnergyForTenSeconds) {
 
 TEST(Impact, ABallComesToRestInTheStepOfItsLastBounce) {
   const double end = std::sqrt(2.0 / 9.81) * 1.8 / 0.2;  // 4.0637 s
-  for (const double h : kImpactSteps) {
+  for (const double h : kStepLengths) {
     const Material material{.friction = 0.0, .restitution = 0.8};
     World world(with_step(h));
     world.create_body(ground(material));
@@ -56,7 +56,7 @@ TEST(Impact, ABallComesToRestInTheStepOfItsLastBounce) {
 }
 
 TEST(Impact, BouncingBallsKeepTheirEnergy) {  // 9 of the 49 balls, 4 of the 20 s
-  for (const double h : kImpactSteps) {
+  for (const double h : kStepLengths) {
     World world = bouncing(3, h);
     const EnergyError error = measure_energy(world, 4.0);
     EXPECT_LE(error.mean_square, 1e-12) << h;  // 3e-24 | 3e-24 | 4e-24 J^2
@@ -64,7 +64,7 @@ TEST(Impact, BouncingBallsKeepTheirEnergy) {  // 9 of the 49 balls, 4 of the 20 
 }
 
 TEST(Impact, ElasticGridKeepsItsEnergy) {  // 64 of the 216 balls, 1 of the 10 s
-  for (const double h : kImpactSteps) {
+  for (const double h : kStepLengths) {
     World world = elastic_666(4, h);
     const EnergyError error = measure_energy(world, 1.0);
     EXPECT_LE(error.mean_square, 1e-6) << h;
@@ -74,7 +74,7 @@ TEST(Impact, ElasticGridKeepsItsEnergy) {  // 64 of the 216 balls, 1 of the 10 s
 }
 
 TEST(Impact, AGasKeepsItsEnergyAndNobodyOverlaps) {  // 125 of the 512 balls, 1 of the 10 s
-  for (const double h : kImpactSteps) {
+  for (const double h : kStepLengths) {
     World world = gas(5, with_step(h));
     const EnergyError error = measure_energy(world, 1.0);
     EXPECT_LE(error.drift, 1e-13) << h;
@@ -86,7 +86,7 @@ TEST(Impact, AGasKeepsItsEnergyAndNobodyOverlaps) {  // 125 of the 512 balls, 1 
 
 TEST(Impact, ATumblingBoxIsTheSameAtEveryStep) {
   std::vector<Motion> after_five;
-  for (const double h : kImpactSteps) {
+  for (const double h : kStepLengths) {
     World world = tumbling_box(h);
     const double start = total_energy(world);
     double drift = 0.0;
@@ -112,7 +112,7 @@ TEST(Impact, ATumblingBoxIsTheSameAtEveryStep) {
 }
 
 TEST(Impact, InACradleAsManyLeaveAsArrive) {
-  for (const double h : kImpactSteps) {
+  for (const double h : kStepLengths) {
     for (const double gap : {0.0, 1e-9}) {
       for (int arriving = 1; arriving <= 4; ++arriving) {
         World world = cradle(arriving, gap, 1.0, with_step(h));
@@ -129,7 +129,7 @@ TEST(Impact, InACradleAsManyLeaveAsArrive) {
 
 TEST(Impact, ALossyCradleHandsOnWhatOneImpactAfterTheOtherWould) {
   // Balls of equal mass exchange (1 + e)/2 of the approach; e = 0.9, one in: 0.95^4 leaves at the end.
-  for (const double h : kImpactSteps) {
+  for (const double h : kStepLengths) {
     for (const double gap : {0.0, 1e-9}) {
       World world = cradle(1, gap, 0.9, with_step(h));
       run(world, static_cast<int>(std::lround(1.0 / h)));
@@ -165,7 +165,7 @@ std::array<double, 5> lossy_cradle(int arriving, double gap, double restitution)
 }
 
 TEST(Impact, ALossyCradleOfSeveralHandsOnWhatPairAfterPairWould) {
-  for (const double h : kImpactSteps) {
+  for (const double h : kStepLengths) {
     for (const double gap : {0.0, 1e-9}) {
       for (int arriving = 1; arriving <= 4; ++arriving) {
         World world = cradle(arriving, gap, 0.9, with_step(h));

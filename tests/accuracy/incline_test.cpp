@@ -44,14 +44,13 @@ Vec3 direction(double heading) {
 }
 
 constexpr double kHeadings[] = {0.0, 0.3, 0.7853981633974483, 1.1, 2.0, 4.5};
-constexpr double kSteps[] = {1.0 / 60.0, 1.0 / 240.0, 1e-3};
 constexpr double kBlockSpeed = 1e-11, kBlockWay = 1e-10;  // [m/s], [m]
 const Box kBlock{Vec3(0.5, 0.5, 0.25)};
 
 TEST(Incline, ABlockSlidesByHalfGSinMinusMuCosTSquaredInAnyDirection) {
   const double slope = 0.5, friction = 0.3, t = 2.0;
   const double a = kG * (std::sin(slope) - friction * std::cos(slope));
-  for (const double step : kSteps) {
+  for (const double step : kStepLengths) {
     for (const double heading : kHeadings) {
       const Slide block = slide(kBlock, 0.25, slope, heading, friction, t, step);
       EXPECT_LE((block.velocity - a * t * direction(heading)).norm(), kBlockSpeed) << heading << ", " << step;
@@ -62,7 +61,7 @@ TEST(Incline, ABlockSlidesByHalfGSinMinusMuCosTSquaredInAnyDirection) {
 }
 
 TEST(Incline, ABlockThatSticksDoesNotMove) {
-  for (const double step : kSteps) {
+  for (const double step : kStepLengths) {
     for (const double heading : kHeadings) {
       const Slide block = slide(kBlock, 0.25, 0.5, heading, 0.6, 2.0, step);
       EXPECT_EQ(block.moved.norm(), 0.0) << heading << ", " << step;
@@ -73,7 +72,7 @@ TEST(Incline, ABlockThatSticksDoesNotMove) {
 
 TEST(Incline, ABlockSticksBelowTheFrictionAngleAndSlidesAboveIt) {
   const double slope = 0.4, t = 10.0;
-  for (const double step : kSteps) {
+  for (const double step : kStepLengths) {
     for (const double excess : {1e-2, 1e-3, 1e-4}) {
       const Slide held = slide(kBlock, 0.25, slope, 0.3, std::tan(slope) + excess, t, step);
       EXPECT_EQ(held.moved.norm(), 0.0) << excess << ", " << step;
@@ -94,7 +93,7 @@ TEST(Incline, BallsAndCylindersRollWithTheirShareOfTheSlidingAcceleration) {
   std::vector<Roller> rollers;
   for (const double heading : kHeadings) rollers.push_back({Sphere{0.5}, 5.0 / 7.0, heading});
   rollers.push_back({Cylinder{0.5, 0.25}, 2.0 / 3.0, 0.0});
-  for (const double step : kSteps) {
+  for (const double step : kStepLengths) {
     for (const Roller& roller : rollers) {
       Options options;
       options.time_step = step;
@@ -123,7 +122,7 @@ TEST(Incline, BallsAndCylindersRollWithTheirShareOfTheSlidingAcceleration) {
 TEST(Incline, ABallOnASteepSlopeRollsAndSlides) {
   const double slope = 1.0, friction = 0.3, t = 2.0;  // tan(slope) > 3.5 mu
   const double a = kG * (std::sin(slope) - friction * std::cos(slope));
-  for (const double step : kSteps) {
+  for (const double step : kStepLengths) {
     for (const double heading : kHeadings) {
       const Slide ball = slide(Sphere{0.5}, 0.5, slope, heading, friction, t, step);
       EXPECT_LE((ball.velocity - a * t * direction(heading)).norm(), 1e-11) << heading << ", " << step;

@@ -13,7 +13,7 @@ using namespace test;
 
 TEST(LinkedBlow, ABallMeetsARodThatHangsOnABallJoint) {
   const double ball_mass = 0.5, rod_mass = 2.0, half = 0.5, thick = 0.02, speed = 3.0, e = 0.8;
-  for (const double h : kImpactSteps) {
+  for (const double h : kStepLengths) {
     for (const double depth : {0.3, 2.0 / 3.0, 0.9}) {
       World world(weightless(h));
       const Material material{.friction = 0.0, .restitution = e};
@@ -35,7 +35,7 @@ TEST(LinkedBlow, ABallMeetsARodThatHangsOnABallJoint) {
 }
 
 TEST(LinkedBlow, ABallOnATautRopeIsAWallToABlowAlongTheRope) {
-  for (const double h : kImpactSteps) {
+  for (const double h : kStepLengths) {
     for (const double gravity : {0.0, 9.81}) {
       Options options = weightless(h);
       options.gravity.z() = -gravity;

@@ -14,8 +14,6 @@ namespace {
 
 using namespace test;
 
-constexpr double kSteps[] = {1.0 / 60.0, 1.0 / 240.0, 1e-3};
-
 Motion launch(const Shape& shape, double height, double friction, const Vec3& v, const Vec3& w, double t,
               double step) {
   Options options;
@@ -41,7 +39,7 @@ double rolled(double v0, double w0, double r, double friction, double t) {
 
 TEST(Rolling, ASlidingBallRollsOnWithFiveSeventhsOfItsSpeed) {
   const double v0 = 3.0, friction = 0.2, r = 0.3, t = 1.0;
-  for (const double step : kSteps) {
+  for (const double step : kStepLengths) {
     for (const double heading : {0.0, 0.9}) {
       const Vec3 along(std::cos(heading), std::sin(heading), 0);
       const Motion ball = launch(Sphere{r}, r, friction, v0 * along, Vec3::Zero(), t, step);
@@ -54,7 +52,7 @@ TEST(Rolling, ASlidingBallRollsOnWithFiveSeventhsOfItsSpeed) {
 
 TEST(Rolling, BackSpinBringsABallBack) {
   const double v0 = 2.0, w0 = -30.0, friction = 0.3, r = 0.25, t = 1.5;
-  for (const double step : kSteps) {
+  for (const double step : kStepLengths) {
     const Motion ball = launch(Sphere{r}, r, friction, Vec3(v0, 0, 0), Vec3(0, w0, 0), t, step);
     EXPECT_LE((ball.v - Vec3((5.0 * v0 + 2.0 * r * w0) / 7.0, 0, 0)).norm(), 1e-11) << step;  // 2e-15..5e-14
     EXPECT_LE((ball.x - Vec3(rolled(v0, w0, r, friction, t), 0, r)).norm(), 1e-11) << step;   // 5e-16..5e-14
@@ -82,7 +80,7 @@ TEST(Rolling, WithoutCutStepsTheEndOfASlideIsWrongByTheSquareOfTheStep) {
 
 TEST(Rolling, ASlidingBlockStopsAfterVSquaredOverTwoMuG) {
   const double friction = 0.4, v0 = 3.0;
-  for (const double step : kSteps) {
+  for (const double step : kStepLengths) {
     for (const double heading : {0.0, 0.9}) {
       const Vec3 along(std::cos(heading), std::sin(heading), 0);
       const Motion block =
@@ -132,7 +130,7 @@ CoinErrors roll_coin(Options options, double step) {
 }
 
 TEST(Rolling, ACoinRollsSteadilyOnItsRim) {
-  for (const double step : kSteps) {
+  for (const double step : kStepLengths) {
     const CoinErrors errors = roll_coin({}, step);
     // Second order, and a turn of 0.05 rad at most: measured 2.6e-4, 6.3e-5, 3.6e-6 m
     EXPECT_LE(errors.moved, 5.0 * step * step) << step;

@@ -99,7 +99,7 @@ int main(int argc, char** argv) {
   const double share = argc > 1 ? std::atof(argv[1]) : 1.0;
   std::puts("| scene | step [s] | error | bound | measured | us a step | impacts | capped |");
   std::puts("|---|---|---|---|---|---|---|---|");
-  for (const double h : kImpactSteps) {
+  for (const double h : kStepLengths) {
     run_ball(1.0, h, std::max(1.0, 10.0 * share));
     run_ball(0.8, h, 5.0);
     run_energy("bouncing, 49 balls", bouncing(7, h), std::max(1.5, 20.0 * share), "energy^2 [J^2]", 1e-12);

@@ -7,8 +7,6 @@
 
 namespace tumble::test {
 
-inline constexpr double kImpactSteps[] = {1.0 / 60.0, 1.0 / 240.0, 1.0 / 1000.0};  // [s]
-
 inline Options with_step(double time_step) {
   Options options;
   options.time_step = time_step;

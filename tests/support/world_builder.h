@@ -6,6 +6,8 @@
 #include "world/world.h"
 
 namespace tumble::test {
+/// [s] that the bounds of the tables are asked for.
+inline constexpr double kStepLengths[] = {1.0 / 60.0, 1.0 / 240.0, 1.0 / 1000.0};
 
 inline GeometryDefinition geometry(const Shape& shape, const Material& material = {}) {
   GeometryDefinition definition;

@@ -148,7 +148,7 @@ TEST(FixedJoint, TwoBodiesFlyAsOne) {
   EXPECT_LT((0.5 * (two.motion(0).x + two.motion(1).x) - one.motion(0).x).norm(), 1e-12);
   const double angle = 2.0 * (one.motion(0).q.conjugate() * two.motion(0).q).vec().norm();
   RecordProperty("angle", std::to_string(angle));
-  EXPECT_LT(angle, 1e-4);
+  EXPECT_LT(angle, 1e-4);             // measured 1.2e-5
   EXPECT_EQ(two.report().pairs, 0u);  // they touch, and are not looked at
 }
 

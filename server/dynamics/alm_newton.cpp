@@ -294,10 +294,10 @@ int AlmNewton::solve(int max_iterations) {
 
 }  // namespace
 
-AlmNewtonReport run_alm_newton(ContactProblem& problem, VelocitySystem& system, double tolerance,
-                               int max_iterations, BestImpulses& best) {
+int run_alm_newton(ContactProblem& problem, VelocitySystem& system, double tolerance, int max_iterations,
+                   BestImpulses& best) {
   best.restore();
-  return {.iterations = AlmNewton(problem, system, tolerance, best).solve(max_iterations)};
+  return AlmNewton(problem, system, tolerance, best).solve(max_iterations);
 }
 
 }  // namespace tumble

@@ -8,13 +8,10 @@
 
 namespace tumble {
 
-struct AlmNewtonReport {
-  int iterations = 0;  ///< Factorizations.
-};
-
 /// Starts from the best impulses so far, offers every iterate to `best`, and ends once one is below `tolerance` [m/s],
-/// they no longer get better, or after `max_iterations`. Leaves any impulses in the problem.
-AlmNewtonReport run_alm_newton(ContactProblem& problem, VelocitySystem& system, double tolerance,
-                               int max_iterations, BestImpulses& best);
+/// they no longer get better, or after `max_iterations`. Leaves any impulses in the problem. Returns the
+/// number of factorizations.
+int run_alm_newton(ContactProblem& problem, VelocitySystem& system, double tolerance, int max_iterations,
+                   BestImpulses& best);
 
 }  // namespace tumble

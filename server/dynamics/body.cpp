@@ -1,6 +1,8 @@
 // See body.h. The momentum is turned into the principal frame P, scaled there, and turned back.
 #include "dynamics/body.h"
 
+#include "math/rotation.h"
+
 namespace tumble {
 namespace {
 
@@ -18,6 +20,13 @@ Vec3 angular_velocity(const MassProperties& mass, const Quat& q_WB, const Vec3& 
 
 Vec3 angular_momentum(const MassProperties& mass, const Quat& q_WB, const Vec3& w_W) {
   return scale_in_principal_axes(mass.I, mass.q_BP, q_WB, w_W);
+}
+
+void displace(const MassProperties& mass, const Vec3& shift, const Vec3& turn, Motion& body) {
+  body.x += shift;
+  if (turn.isZero(0.0)) return;
+  body.q = normalized(exp_map(turn) * body.q);
+  body.w = angular_velocity(mass, body.q, body.L);
 }
 
 }  // namespace tumble

@@ -35,6 +35,8 @@ struct Motion {
 Vec3 angular_velocity(const MassProperties& mass, const Quat& q_WB, const Vec3& L_W);
 /// L = I_W w.
 Vec3 angular_momentum(const MassProperties& mass, const Quat& q_WB, const Vec3& w_W);
+/// Shifts [m] and turns [rad, world axes] the body without a velocity: v and L stay.
+void displace(const MassProperties& mass, const Vec3& shift, const Vec3& turn, Motion& body);
 /// Velocity of the body's point at r [m] from the centre of mass (course: v = v_r x x' + v_l).
 inline Vec3 point_velocity(const Motion& body, const Vec3& r_W) {
   return body.v + body.w.cross(r_W);

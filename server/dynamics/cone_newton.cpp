@@ -219,14 +219,14 @@ int ConeNewton::find_compromise() {
 
 }  // namespace
 
-ConeNewtonReport find_compromise(ContactProblem& problem, VelocitySystem& system, BestImpulses& best) {
+int find_compromise(ContactProblem& problem, VelocitySystem& system, BestImpulses& best) {
   best.drop();
-  return {.iterations = ConeNewton(problem, system, 0.0, best).find_compromise()};
+  return ConeNewton(problem, system, 0.0, best).find_compromise();
 }
 
-ConeNewtonReport run_cone_newton(ContactProblem& problem, VelocitySystem& system, double tolerance,
-                                 int max_iterations, BestImpulses& best) {
-  return {.iterations = ConeNewton(problem, system, tolerance, best).solve(max_iterations)};
+int run_cone_newton(ContactProblem& problem, VelocitySystem& system, double tolerance, int max_iterations,
+                    BestImpulses& best) {
+  return ConeNewton(problem, system, tolerance, best).solve(max_iterations);
 }
 
 }  // namespace tumble

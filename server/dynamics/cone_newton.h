@@ -8,16 +8,13 @@
 
 namespace tumble {
 
-struct ConeNewtonReport {
-  int iterations = 0;  ///< Factorizations.
-};
-
 /// Goes on from the best impulses so far, for at most `max_iterations`, until `tolerance` [m/s]. Turnings stay as they are.
-ConeNewtonReport run_cone_newton(ContactProblem& problem, VelocitySystem& system, double tolerance,
-                                 int max_iterations, BestImpulses& best);
+/// Returns the number of factorizations, as does the next.
+int run_cone_newton(ContactProblem& problem, VelocitySystem& system, double tolerance, int max_iterations,
+                    BestImpulses& best);
 
 /// For problems without a solution (a press that asks for the impossible): from no impulses, those of contacts that give way
 /// a little, which violates the conditions least. Replaces what `best` knew.
-ConeNewtonReport find_compromise(ContactProblem& problem, VelocitySystem& system, BestImpulses& best);
+int find_compromise(ContactProblem& problem, VelocitySystem& system, BestImpulses& best);
 
 }  // namespace tumble

@@ -187,6 +187,11 @@ double compute_residual(const ContactProblem& problem) {
   return largest + poison;
 }
 
+double drift_speed(const ContactProblem& problem, const PointContact& c) {
+  const double u = c.n.dot(relative_velocity(problem.bodies[c.a], problem.bodies[c.b], c.rA, c.rB));
+  return problem.drift == ContactProblem::Drift::average ? 0.5 * (c.un0 + u) : u;
+}
+
 ContactProblem::Drift choose_drift(const ContactProblem& problem) {
   constexpr double kSlack = 1e-8;  // [m] far below what can be seen, far above the rounding of a gap
   const auto stays_open = [&](std::uint32_t a, std::uint32_t b, const Vec3& n, const Vec3& rA, const Vec3& rB,

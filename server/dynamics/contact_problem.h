@@ -142,6 +142,9 @@ void apply_stored_impulses(ContactProblem& problem);
 /// row would correct itself. NaN if anything is not finite.
 double compute_residual(const ContactProblem& problem);
 
+/// Of b relative to a along n, with which the gap of the contact changes over the step [m/s].
+double drift_speed(const ContactProblem& problem, const PointContact& c);
+
 /// Average if with it every contact and rigid row keeps gap + h u_n >= min(gap, gap + h b, 0) - 1e-8 m, else end.
 ContactProblem::Drift choose_drift(const ContactProblem& problem);
 

@@ -264,11 +264,11 @@ int InteriorPoint::solve() {
 
 }  // namespace
 
-InteriorPointReport run_interior_point(ContactProblem& problem, VelocitySystem& system, double tolerance,
-                                       BestImpulses& best) {
+int run_interior_point(ContactProblem& problem, VelocitySystem& system, double tolerance,
+                       BestImpulses& best) {
   best.restore_start();
   apply_stored_moments(problem);  // of turnings, which stay as they are here: Newton's method moves them
-  return {.iterations = InteriorPoint(problem, system, tolerance, best).solve()};
+  return InteriorPoint(problem, system, tolerance, best).solve();
 }
 
 }  // namespace tumble

@@ -8,13 +8,9 @@
 
 namespace tumble {
 
-struct InteriorPointReport {
-  int iterations = 0;  ///< Factorizations, at most 40.
-};
-
 /// Starts cold from the velocities v* of the problem, offers the impulses of every iterate to `best`, and ends once
 /// these are below `tolerance` [m/s], no longer get better, or are not finite. Leaves any impulses in the problem.
-InteriorPointReport run_interior_point(ContactProblem& problem, VelocitySystem& system, double tolerance,
-                                       BestImpulses& best);
+/// Returns the number of factorizations, at most 40.
+int run_interior_point(ContactProblem& problem, VelocitySystem& system, double tolerance, BestImpulses& best);
 
 }  // namespace tumble

@@ -80,15 +80,15 @@ void Ladder::sweep(int max_sweeps) {
 }
 
 void Ladder::newton(int max_iterations) {
-  report_.newton_steps += run_alm_newton(problem_, system(), wanted_, max_iterations, best_).iterations;
+  report_.newton_steps += run_alm_newton(problem_, system(), wanted_, max_iterations, best_);
 }
 
 void Ladder::cone_newton(int max_iterations) {
-  report_.newton_steps += run_cone_newton(problem_, system(), wanted_, max_iterations, best_).iterations;
+  report_.newton_steps += run_cone_newton(problem_, system(), wanted_, max_iterations, best_);
 }
 
 bool Ladder::interior_point(double residual) {
-  report_.iterations += run_interior_point(problem_, system(), residual, best_).iterations;
+  report_.iterations += run_interior_point(problem_, system(), residual, best_);
   return best_.residual() < residual;
 }
 
@@ -106,7 +106,7 @@ SolverReport Ladder::finish() {
     report_.fallback = true;
     report_.accepted = false;
     const BestImpulses found = best_;
-    report_.newton_steps += find_compromise(problem_, system(), best_).iterations;
+    report_.newton_steps += find_compromise(problem_, system(), best_);
     if (plausible && found.residual() < 0.5 * best_.residual()) best_.go_back(found);
     best_.restore();
   }

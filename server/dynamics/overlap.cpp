@@ -67,10 +67,7 @@ double tolerance_of(const ContactProblem& problem) {
 
 /// [m] at the end of the step, by the velocities.
 double end_gap(const ContactProblem& problem, const PointContact& c) {
-  const SolverBody &A = problem.bodies[c.a], &B = problem.bodies[c.b];
-  const double u = c.n.dot(relative_velocity(A, B, c.rA, c.rB));
-  const double drift = problem.drift == ContactProblem::Drift::average ? 0.5 * (c.un0 + u) : u;
-  return c.separation + problem.h * drift;
+  return c.separation + problem.h * drift_speed(problem, c);
 }
 
 bool overlaps(const ContactProblem& problem) {

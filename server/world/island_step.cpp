@@ -418,11 +418,7 @@ void World::move_body(std::uint32_t slot, const VelocityPath& path, const Vec3& 
     return;
   }
   step.integrate_in_contact(mass, path, step.h, motion);
-  motion.x += shift;
-  if (!turn.isZero(0.0)) {
-    motion.q = normalized(exp_map(turn) * motion.q);
-    motion.w = angular_velocity(mass, motion.q, motion.L);
-  }
+  displace(mass, shift, turn, motion);
   if (!is_finite(motion)) contain(slot, last_good);
 }
 

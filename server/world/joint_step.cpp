@@ -14,8 +14,6 @@ namespace {
 
 /// [m, rad] by which an arm or what a body turns may still change.
 constexpr double kStays = 1e-11;
-/// [m/s] with which joints may part or close where a step ends.
-constexpr double kJointHeld = 1e-12;
 
 }  // namespace
 
@@ -79,9 +77,9 @@ void World::hold_joints(std::size_t island, const StepContext& part) {
     const Vec3 u = relative_velocity(problem.bodies[row.a], problem.bodies[row.b], row.rA, row.rB);
     fastest = std::max(fastest, std::abs(row.n.dot(u)));
   }
-  if (fastest <= kJointHeld) return;
+  if (fastest <= kHeld) return;
   SolverSettings settings = part.solver_settings;
-  settings.tolerance = std::min(settings.tolerance, kJointHeld);
+  settings.tolerance = std::min(settings.tolerance, kHeld);
   const SolverReport report = part.solve(problem, settings);
   count_solution(report);
   if (report.exact) store_blow();
@@ -116,10 +114,7 @@ bool World::close_joints(const StepContext& part) {
   for (std::uint32_t i = 0; i < scratch_.problem_movable; ++i) {
     const std::uint32_t slot = scratch_.problem_slot[i];
     const SolverBody& body = scratch_.problem.bodies[i];
-    Motion& motion = motions_[slot];
-    motion.x += body.shift;
-    motion.q = normalized(exp_map(body.turn) * motion.q);
-    motion.w = angular_velocity(masses_[slot], motion.q, motion.L);
+    displace(masses_[slot], body.shift, body.turn, motions_[slot]);
   }
   return true;
 }

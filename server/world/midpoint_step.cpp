@@ -192,11 +192,7 @@ void World::finish_midpoint(std::size_t island, const StepContext& part, const M
     motion = way.ends[i];
     const Vec3 shift = share * way.shifts[i], turn = share * way.turns[i];
     shift_work += work_of_shift(slot, motion.q, motion.L, shift, turn);
-    motion.x += shift;
-    if (!turn.isZero(0.0)) {
-      motion.q = normalized(exp_map(turn) * motion.q);
-      motion.w = angular_velocity(masses_[slot], motion.q, motion.L);
-    }
+    displace(masses_[slot], shift, turn, motion);
     if (!is_finite(motion)) contain(slot, scratch_.part_start.motions[i]);
   }
   ++counters_.islands_by_midpoint;

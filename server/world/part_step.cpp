@@ -10,8 +10,6 @@ namespace {
 
 /// Share of the friction limit that is not all of it.
 constexpr double kOfLimit = 1e-6;
-/// [m/s] rounding of velocities.
-constexpr double kHeld = 1e-12;
 
 void add_held_row(ContactProblem& problem, const PointContact& c, const Vec3& n) {
   ScalarRow& row = problem.rows.emplace_back();
@@ -33,13 +31,18 @@ bool World::may_be_cut(const StepContext& step, int most_bodies) const {
                       [this](std::uint32_t slot) { return slot != kWorld && takes_part(slot); });
 }
 
-void World::solve_part(std::size_t island, const StepContext& part) {
+void World::build_part(std::size_t island, const StepContext& part) {
   build_problem(island, part);
-  ContactProblem& problem = scratch_.problem;
+  const double share = scratch_.impulse_share = part.h / options_.time_step;
+  for (PointContact& c : scratch_.problem.contacts) c.lambda *= share;
+  for (ScalarRow& row : scratch_.problem.rows) row.lambda *= share;
+  for (Turning& turning : scratch_.problem.turnings) turning.lambda *= share;
+}
+
+void World::solve_part(std::size_t island, const StepContext& part) {
+  build_part(island, part);
   if (part.airborne) leave_out_open_contacts(part);
-  scratch_.impulse_share = part.h / options_.time_step;
-  for (PointContact& c : problem.contacts) c.lambda *= scratch_.impulse_share;
-  prepare(problem, part.bounds);
+  prepare(scratch_.problem, part.bounds);
   StepContext sharp = part;
   sharp.solver_settings.tolerance = std::min(part.solver_settings.tolerance, kSharp * scratch_.impulse_share);
   solve_problem(sharp);

@@ -51,15 +51,10 @@ bool World::is_taut(const StepContext& step) {
 /// The problem of a part of the step that begins where the parts before it ended; `opened` says by how much the gaps
 /// of the contacts have changed since the step began [m].
 void World::solve_taut_part(std::size_t island, const StepContext& part) {
-  build_problem(island, part);
+  build_part(island, part);
   ContactProblem& problem = scratch_.problem;
-  scratch_.impulse_share = part.h / options_.time_step;
-  for (std::size_t i = 0; i < problem.contacts.size(); ++i) {
+  for (std::size_t i = 0; i < problem.contacts.size(); ++i)
     problem.contacts[i].separation += scratch_.opened[i];
-    problem.contacts[i].lambda *= scratch_.impulse_share;
-  }
-  for (ScalarRow& row : problem.rows) row.lambda *= scratch_.impulse_share;
-  for (Turning& turning : problem.turnings) turning.lambda *= scratch_.impulse_share;
   prepare(problem, part.bounds);
   solve_problem(part);
 }
@@ -69,10 +64,8 @@ void World::note_opening() {
   for (std::size_t i = 0; i < problem.contacts.size(); ++i) {
     const PointContact& c = problem.contacts[i];
     const SolverBody &A = problem.bodies[c.a], &B = problem.bodies[c.b];
-    const double u = c.n.dot(relative_velocity(A, B, c.rA, c.rB));
-    const double drift = problem.drift == ContactProblem::Drift::average ? 0.5 * (c.un0 + u) : u;
     const Vec3 moved = B.shift + B.turn.cross(c.rB) - A.shift - A.turn.cross(c.rA);
-    scratch_.opened[i] += problem.h * drift + c.n.dot(moved);
+    scratch_.opened[i] += problem.h * drift_speed(problem, c) + c.n.dot(moved);
   }
 }
 

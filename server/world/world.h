@@ -121,6 +121,8 @@ class World {
   static constexpr double kOpen = 1e-6;
   /// [m/s] to which parts are solved: what is wrong with forces would be accepted by every step that follows.
   static constexpr double kSharp = 1e-12;
+  /// [m/s] rounding of velocities that something holds where a step or a part of it ends.
+  static constexpr double kHeld = 1e-12;
 
   struct ActivePush {
     Push push;
@@ -336,6 +338,8 @@ class World {
   bool is_open(const PointContact& contact, const StepContext& part) const;
   void leave_out_open_contacts(const StepContext& part);
   /// Builds the island's problem for a part of the step, where it is now, and solves it sharply.
+  /// The problem with impulses of so long a part to start from.
+  void build_part(std::size_t island, const StepContext& part);
   void solve_part(std::size_t island, const StepContext& part);
   /// Moves the solved island smoothly through the rest of the step, or up to where a slide ends or it has turned far, and
   /// solves for what is then left.

@@ -27,7 +27,7 @@ struct InteriorResult {
 InteriorResult interior_point(ContactProblem& problem) {
   BestImpulses best(problem);
   VelocitySystem system(problem, VelocitySystem::find_pattern(problem));
-  const int iterations = run_interior_point(problem, system, 1e-9, best).iterations;
+  const int iterations = run_interior_point(problem, system, 1e-9, best);
   best.restore();
   return {iterations, best.residual()};
 }

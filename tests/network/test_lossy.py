@@ -84,7 +84,7 @@ def test_commands_act_exactly_once_under_loss(lossless, start, tmp_path):
     server = start_far(lossless, start, SCENES / "free.sdf", "--record", path)
     lossless.set_loss(0.3)
     with World(url=CABLE_URL, timeout=20.0) as world:
-        ball, number, force = world["ball"], 400, 0.5
+        ball, number, force = world["ball"], 1500, 0.5  # more than the server remembers of a client
         futures = [ball.push(force=(force, 0, 0), wait=False) for _ in range(number)]
         answers = [future.result(30.0) for future in futures]
         mass, dt = ball.mass, world.heartbeat.dt

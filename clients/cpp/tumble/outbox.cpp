@@ -2,43 +2,54 @@
 #include "tumble/outbox.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace tumble::client {
 
 std::string Answer::text() const {
   if (!heard) return "no answer";
-  std::string text = status_text(status);
-  if (!detail.empty()) text += ": " + detail;
-  return text;
+  return detail.empty() ? status_text(status) : detail;
 }
 
 void Outbox::add(std::int64_t sequence, std::string channel, std::vector<std::uint8_t> bytes,
                  Clock::time_point now) {
-  waiting_[sequence] = {std::move(channel), std::move(bytes), now, now + timing_.limit, 0};
+  queue_.emplace_back(sequence, Command{std::move(channel), std::move(bytes), now, now, 0});
 }
 
 std::vector<const Outbox::Command*> Outbox::take_due(Clock::time_point now) {
+  if (std::exchange(answered_, false)) progress_ = now;
+  give_up(now);
+  for (; has_room(); queue_.pop_front()) {
+    Command& command = sent_.insert(std::move(queue_.front())).first->second;
+    command.since = command.next = now;
+  }
   std::vector<const Command*> due;
-  for (auto entry = waiting_.begin(); entry != waiting_.end();) {
-    Command& command = entry->second;
-    if (now >= command.deadline) {
-      answers_[entry->first] = Answer{};
-      entry = waiting_.erase(entry);
-      continue;
-    }
-    if (now >= command.next) {
-      command.next = now + timing_.resend;
-      ++command.sent;
-      due.push_back(&command);
-    }
-    ++entry;
+  for (auto& [sequence, command] : sent_) {
+    if (now < command.next) continue;
+    command.next = now + timing_.resend;
+    ++command.sent;
+    due.push_back(&command);
   }
   return due;
 }
 
+/// The first of both in their order have the earliest ends.
+void Outbox::give_up(Clock::time_point now) {
+  for (; !sent_.empty() && now >= sent_.begin()->second.since + timing_.limit; sent_.erase(sent_.begin()))
+    answers_[sent_.begin()->first] = Answer{};
+  for (; !queue_.empty() && now >= std::max(queue_.front().second.since, progress_) + timing_.limit;
+       queue_.pop_front())
+    answers_[queue_.front().first] = Answer{};
+}
+
+bool Outbox::has_room() const {
+  return !queue_.empty() && (sent_.empty() || queue_.front().first < sent_.begin()->first + kWindow);
+}
+
 Outbox::Clock::time_point Outbox::next_due() const {
-  auto next = Clock::time_point::max();
-  for (const auto& [sequence, command] : waiting_) next = std::min({next, command.next, command.deadline});
+  auto next = has_room() ? queue_.front().second.since : Clock::time_point::max();
+  for (const auto& [sequence, command] : sent_)
+    next = std::min({next, command.next, command.since + timing_.limit});
   return next;
 }
 
@@ -49,7 +60,8 @@ void Outbox::receive(const ack_t& message) {
     const auto known = answers_.find(sequence);
     const bool only_queued =
         known != answers_.end() && known->second.heard && known->second.status == Status::queued;
-    if (waiting_.erase(sequence) == 0 && !only_queued) continue;  // forgotten, answered, or never ours
+    if (sent_.erase(sequence) == 0 && !only_queued) continue;  // forgotten, answered, or never ours
+    answered_ = true;
     answers_[sequence] = {true,
                           static_cast<Status>(message.status[i]),
                           message.applied_step[i],

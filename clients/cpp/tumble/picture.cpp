@@ -109,10 +109,8 @@ const Body* Picture::find(std::int32_t id) const {
 }
 
 const Body* Picture::find(std::string_view name) const {
-  for (const auto& [id, body] : bodies_) {
-    if (body.described && body.name == name) return &body;
-  }
-  return nullptr;
+  const auto found = ids_by_name_.find(name);
+  return found == ids_by_name_.end() ? nullptr : find(found->second);
 }
 
 bool Picture::is_complete() const {
@@ -141,6 +139,7 @@ Body* Picture::body_for(std::int32_t id, std::int32_t generation, bool may_creat
   const auto found = bodies_.find(id);
   if (found != bodies_.end() && found->second.generation == generation) return &found->second;
   if (!may_create || (found != bodies_.end() && found->second.generation > generation)) return nullptr;
+  if (found != bodies_.end()) forget_name(found->second);
   Body fresh;
   fresh.id = id;
   fresh.generation = generation;
@@ -153,8 +152,18 @@ void Picture::remove_unlisted(const catalog_t& message) {
       message.end_id >= message.id_limit ? bodies_.end() : bodies_.lower_bound(message.end_id);
   while (message.first_id < message.end_id && entry != beyond) {
     const bool listed = std::find(message.id.begin(), message.id.end(), entry->first) != message.id.end();
-    entry = listed || entry->second.epoch >= message.epoch ? std::next(entry) : bodies_.erase(entry);
+    if (listed || entry->second.epoch >= message.epoch) {
+      ++entry;
+    } else {
+      forget_name(entry->second);
+      entry = bodies_.erase(entry);
+    }
   }
+}
+
+void Picture::forget_name(const Body& body) {
+  const auto known = ids_by_name_.find(body.name);
+  if (known != ids_by_name_.end() && known->second == body.id) ids_by_name_.erase(known);
 }
 
 void Picture::merge_bodies(const catalog_t& message) {
@@ -164,6 +173,7 @@ void Picture::merge_bodies(const catalog_t& message) {
     body->epoch = std::max(body->epoch, message.epoch);
     body->described = true;
     body->name = message.name[i];
+    ids_by_name_[body->name] = body->id;
     body->type = message.type[i];
     body->mass = message.mass[i];
     body->inertia = {message.ixx[i], message.iyy[i], message.izz[i],

@@ -46,11 +46,13 @@ class Picture {
   /// The entry for (id, generation), made if `may_create`; null if the message is about an earlier user of the id.
   Body* body_for(std::int32_t id, std::int32_t generation, bool may_create);
   void remove_unlisted(const catalog_t& message);
+  void forget_name(const Body& body);
   void merge_bodies(const catalog_t& message);
   void merge_shapes(const catalog_t& message);
   void merge_vertices(const catalog_t& message);
 
   std::map<std::int32_t, Body> bodies_;
+  std::map<std::string, std::int32_t, std::less<>> ids_by_name_;  ///< Of the described.
   std::int64_t session_ = 0;
   std::int64_t utime_ = 0;  ///< Newest server clock heard in this session [us].
   std::int64_t step_ = -1;

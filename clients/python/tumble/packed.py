@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Tuple
+from typing import Sequence, Tuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +13,12 @@ RECORD = 25
 """Bytes of a body."""
 GENERATIONS = 16
 """A record knows the generation modulo this."""
-_FIELDS = [14, 1, 1, 1, 4, 20, 20, 20, 2, 13, 13, 13, 13, 13, 13, 13, 13, 13]
+_WIDTHS = np.array([14, 1, 1, 1, 4, 20, 20, 20, 2, 13, 13, 13, 13, 13, 13, 13, 13, 13])
+_ENDS = np.cumsum(_WIDTHS)
+_BYTES = (_ENDS - _WIDTHS) // 8  # where a field begins; it ends within the four bytes from there
+_SHIFTS = (32 - (_ENDS - 8 * _BYTES)).astype(np.uint32)
+_MASKS = (1 << _WIDTHS).astype(np.uint32) - 1
+_ID, _GENERATION, _POSITION, _LARGEST, _TURN, _VELOCITIES = 0, 4, slice(5, 8), 8, slice(9, 12), slice(12, 18)
 _FLAGS = (state_t.FLAG_RESTING, state_t.FLAG_CONTAINED, state_t.FLAG_WATCHED)
 _TURN_LIMIT = np.sqrt(0.5)
 _FRACTION_BITS, _EXPONENT_OFFSET = 7, 15
@@ -21,27 +26,28 @@ _FRACTION_BITS, _EXPONENT_OFFSET = 7, 15
 Ints = NDArray[np.int64]
 
 
-def unpack(message: packed_t) -> Tuple[Ints, Ints, Ints, NDArray[np.float64]]:
-    """(ids, generations modulo GENERATIONS, flags, n x 13 positions, orientations and velocities)."""
-    records = np.frombuffer(bytes(message.records), np.uint8).reshape(message.n, RECORD)
-    fields = _split(np.unpackbits(records, axis=1))
-    flags = sum(fields[1 + i] * flag for i, flag in enumerate(_FLAGS))
-    motion = np.empty((message.n, 13))
-    for axis in range(3):
-        motion[:, axis] = message.origin[axis] + fields[5 + axis] / ((1 << 20) - 1) * message.edge
-    motion[:, 3:7] = _orientations(fields[8], np.stack(fields[9:12], axis=1))
-    for column in range(6):
-        motion[:, 7 + column] = _short_floats(fields[12 + column])
-    return fields[0] + message.first_id, fields[4], np.asarray(flags), motion
+def unpack(messages: Sequence[packed_t]) -> Tuple[Ints, Ints, Ints, NDArray[np.float64]]:
+    """(ids, generations modulo GENERATIONS, flags, n x 13 positions, orientations and velocities) of all of them."""
+    records = np.frombuffer(b"".join(bytes(message.records) for message in messages), np.uint8)
+    fields = _split(records.reshape(-1, RECORD))
+    counts = [message.n for message in messages]
+    first_ids = np.repeat([message.first_id for message in messages], counts)
+    origins = np.repeat([message.origin for message in messages], counts, axis=0)
+    edges = np.repeat([message.edge for message in messages], counts)
+    flags = sum(fields[:, 1 + i] * flag for i, flag in enumerate(_FLAGS))
+    motion = np.empty((len(fields), 13))
+    motion[:, 0:3] = origins + fields[:, _POSITION] / ((1 << 20) - 1) * edges[:, None]
+    motion[:, 3:7] = _orientations(fields[:, _LARGEST], fields[:, _TURN])
+    motion[:, 7:13] = _short_floats(fields[:, _VELOCITIES])
+    return fields[:, _ID] + first_ids, fields[:, _GENERATION], np.asarray(flags), motion
 
 
-def _split(bits: NDArray[np.uint8]) -> "list[Ints]":
-    fields, at = [], 0
-    for width in _FIELDS:
-        weights = 1 << np.arange(width - 1, -1, -1, dtype=np.int64)
-        fields.append(bits[:, at : at + width].astype(np.int64) @ weights)
-        at += width
-    return fields
+def _split(records: NDArray[np.uint8]) -> Ints:
+    """A row a body, a column a field."""
+    padded = np.zeros((len(records), RECORD + 3), np.uint32)
+    padded[:, :RECORD] = records
+    words = padded[:, :-3] << 24 | padded[:, 1:-2] << 16 | padded[:, 2:-1] << 8 | padded[:, 3:]  # from every byte on
+    return (words[:, _BYTES] >> _SHIFTS & _MASKS).astype(np.int64)
 
 
 def _orientations(largest: Ints, codes: Ints) -> NDArray[np.float64]:

@@ -7,8 +7,10 @@ indexed by body id, so that a message of a thousand bodies is merged without a l
 
 from __future__ import annotations
 
+import struct
 from dataclasses import dataclass, field
-from typing import Any, Dict, Iterator, List, Optional, Set, Tuple, Union
+from itertools import chain, compress
+from typing import Any, Dict, Iterator, List, Optional, Sequence, Set, Tuple, Union
 
 import numpy as np
 from numpy.typing import NDArray
@@ -134,6 +136,9 @@ class State:
         )
 
 
+_CATALOG_HEAD = struct.Struct(">qqqq")  # fingerprint, utime, session, epoch
+
+
 class Picture:
     def __init__(self) -> None:
         self._clear(0)
@@ -149,6 +154,9 @@ class Picture:
         self.epoch, self.num_bodies = -1, -1
         self.descriptions: Dict[int, Description] = {}
         self._ids_by_name: Dict[str, int] = {}
+        self._unfinished: Set[int] = set()  # described, but not with all shapes and vertices
+        self._settled = -1  # epoch at which all bodies, and no others, were known
+        self._listing: Optional[Tuple[NDArray[np.int64], List[str]]] = None  # of the described; None: changed since
         self._utime = 0
         # By id; generation -1: nobody. Columns of `motion`: position, orientation, velocity, angular velocity.
         self._generation = np.full(0, -1, np.int64)
@@ -157,57 +165,60 @@ class Picture:
         self._flags = np.zeros(0, np.uint8)
         self._motion = np.zeros((0, 13))
 
-    def merge_state(self, message: state_t) -> bool:
-        """False if the message was too old to say anything."""
-        if not self._adopt_session(message.session, message.utime):
+    def merge_state(self, *messages: state_t) -> bool:
+        """Messages of one publication. False if they were too old to say anything."""
+        head = messages[0]
+        if not self._adopt_session(head.session, head.utime):
             return False
         # A body that a newer epoch may have removed is not brought back by a message that was overtaken.
-        may_create = message.catalog_epoch >= self.epoch
-        self._note_publication(message)
-        if message.n == 0:
+        may_create = head.catalog_epoch >= self.epoch
+        self._note_publication(messages)
+        ids = np.array(list(chain.from_iterable(m.id for m in messages)), np.int64)
+        if len(ids) == 0:
             return True
-        ids, generations = np.array(message.id), np.array(message.generation)
+        generations = np.array(list(chain.from_iterable(m.generation for m in messages)), np.int64)
+        flags = np.array(list(chain.from_iterable(m.flags for m in messages)), np.int8).view(np.uint8)
+        motion = np.concatenate(
+            [(m.px, m.py, m.pz, m.qw, m.qx, m.qy, m.qz, m.vx, m.vy, m.vz, m.wx, m.wy, m.wz) for m in messages], axis=1
+        ).T
         self._make_room(int(ids.max()) + 1)
         if may_create:
             self._create(ids, generations)
-        m = message
-        columns = (m.px, m.py, m.pz, m.qw, m.qx, m.qy, m.qz, m.vx, m.vy, m.vz, m.wx, m.wy, m.wz)
-        known = self._generation[ids] == generations
-        self._place(message, ids, known, np.array(message.flags, np.int8).view(np.uint8), np.array(columns).T)
+        self._place(head, ids, self._generation[ids] == generations, flags, motion)
         return True
 
-    def merge_packed(self, message: packed_t) -> bool:
+    def merge_packed(self, *messages: packed_t) -> bool:
         """The same from packed_t. Only bodies that the catalogue has told: it knows their whole generation."""
-        if not self._adopt_session(message.session, message.utime):
+        head = messages[0]
+        if not self._adopt_session(head.session, head.utime):
             return False
-        self._note_publication(message)
-        if message.n == 0:
+        self._note_publication(messages)
+        ids, generations, flags, motion = unpack(messages)
+        if len(ids) == 0:
             return True
-        ids, generations, flags, motion = unpack(message)
         self._make_room(int(ids.max()) + 1)
         known = (self._generation[ids] >= 0) & (self._generation[ids] % GENERATIONS == generations)
-        self._place(message, ids, known, flags.astype(np.uint8), motion)
+        self._place(head, ids, known, flags.astype(np.uint8), motion)
         return True
 
-    def _note_publication(self, message: Union[state_t, packed_t]) -> None:
-        self._note_epoch(message.catalog_epoch, message.num_bodies)
-        if message.step >= self.step:
-            self.step, self.time, self.state_hash = message.step, message.time, message.state_hash
-        if message.utime > self._publication:
-            self._publication, self._chunks = message.utime, set()
-        if message.utime == self._publication:
-            self._chunks.add(message.chunk)
-            if len(self._chunks) == message.num_chunks:
-                self.whole_step = max(self.whole_step, message.step)
+    def _note_publication(self, messages: Sequence[Union[state_t, packed_t]]) -> None:
+        head = messages[0]
+        self._note_epoch(head.catalog_epoch, head.num_bodies)
+        if head.step >= self.step:
+            self.step, self.time, self.state_hash = head.step, head.time, head.state_hash
+        if head.utime > self._publication:
+            self._publication, self._chunks = head.utime, set()
+        if head.utime == self._publication:
+            self._chunks.update(message.chunk for message in messages)
+            if len(self._chunks) == head.num_chunks:
+                self.whole_step = max(self.whole_step, head.step)
 
-    def _place(
-        self, message: Union[state_t, packed_t], ids: Any, known: Any, flags: Any, motion: Array
-    ) -> None:
+    def _place(self, head: Union[state_t, packed_t], ids: Any, known: Any, flags: Any, motion: Array) -> None:
         """Overwrites the rows of those that are known, unless they are newer."""
-        self._epoch[ids[known]] = np.maximum(self._epoch[ids[known]], message.catalog_epoch)
-        use = known & (self._step[ids] <= message.step)
+        self._epoch[ids[known]] = np.maximum(self._epoch[ids[known]], head.catalog_epoch)
+        use = known & (self._step[ids] <= head.step)
         rows = ids[use]
-        self._step[rows], self._flags[rows], self._motion[rows] = message.step, flags[use], motion[use]
+        self._step[rows], self._flags[rows], self._motion[rows] = head.step, flags[use], motion[use]
 
     def merge_catalog(self, message: catalog_t) -> bool:
         """False if the message was too old to say anything."""
@@ -217,12 +228,10 @@ class Picture:
         self._remove_unlisted(message)
         self._merge_bodies(message)
         self._merge_shapes(message)
-        for i in range(message.num_vertices):
-            description = self.descriptions.get(message.vertex_body[i])
-            shape = description.shapes.get(message.vertex_shape[i]) if description else None
-            if shape is not None and 0 <= message.vertex_number[i] < shape.num_vertices:
-                vertex = (message.vertex_x[i], message.vertex_y[i], message.vertex_z[i])
-                shape.vertices[message.vertex_number[i]] = vertex
+        self._merge_vertices(message)
+        for id in self._unfinished & {*message.id, *message.shape_body, *message.vertex_body}:
+            if self.descriptions[id].is_complete:
+                self._unfinished.discard(id)
         return True
 
     def find(self, name: str) -> Optional[Description]:
@@ -235,10 +244,33 @@ class Picture:
     @property
     def is_complete(self) -> bool:
         """True if every body of the newest epoch is described with all its shapes, and placed."""
+        known = self._generation >= 0
         return (
-            int(np.count_nonzero(self._generation >= 0)) == len(self.descriptions) == self.num_bodies
-            and all(item.is_complete and self.is_placed(id) for id, item in self.descriptions.items())
+            int(np.count_nonzero(known)) == len(self.descriptions) == self.num_bodies
+            and not self._unfinished
+            and not np.any(self._step[known] < 0)
         )
+
+    def has_settled(self, catalog: bytes) -> bool:
+        """True if this catalogue's message can't tell anything new: every body of its epoch, and no other, is known.
+
+        The server repeats the catalogue for those who join; reading all of it would cost as much as the states.
+        """
+        if len(catalog) < _CATALOG_HEAD.size:
+            return False
+        _, _, session, epoch = _CATALOG_HEAD.unpack_from(catalog)
+        if (session, epoch) != (self.session, self.epoch):
+            return False
+        if self._settled != epoch and self.is_complete and np.all(self._epoch[self._generation >= 0] >= epoch):
+            self._settled = epoch
+        return self._settled == epoch
+
+    def listing(self) -> Tuple[NDArray[np.int64], List[str]]:
+        """(ids, names) of all that is described, by rising id; not to be changed."""
+        if self._listing is None:
+            ids = sorted(self.descriptions)
+            self._listing = np.array(ids, np.int64), [self.descriptions[id].name for id in ids]
+        return self._listing
 
     def body_state(self, description: Description) -> BodyState:
         motion, id = self._motion[description.id].copy(), description.id
@@ -249,12 +281,14 @@ class Picture:
 
     def snapshot(self) -> State:
         """A copy of everything that is described and placed, by rising id."""
-        ids = np.array([id for id in sorted(self.descriptions) if self.is_placed(id)], np.int64)
+        described, names = self.listing()
+        placed = self._step[described] >= 0
+        ids = described[placed]
         motion = self._motion[ids]
         return State(
             self.step,
             self.time,
-            [self.descriptions[id].name for id in ids],
+            list(compress(names, placed)),
             ids,
             self._step[ids],
             motion[:, 0:3],
@@ -297,6 +331,8 @@ class Picture:
     def _forget(self, id: int) -> None:
         self._generation[id], self._step[id], self._epoch[id] = -1, -1, 0
         description = self.descriptions.pop(id, None)
+        self._unfinished.discard(id)
+        self._listing = None
         if description and self._ids_by_name.get(description.name) == id:
             del self._ids_by_name[description.name]
 
@@ -315,10 +351,10 @@ class Picture:
         ids, generations = np.array(message.id), np.array(message.generation)
         self._make_room(int(ids.max()) + 1)
         self._create(ids, generations)
-        for i, id in enumerate(message.id):
-            if self._generation[id] != message.generation[i]:
-                continue
-            self._epoch[id] = max(int(self._epoch[id]), message.epoch)
+        ours = self._generation[ids] == generations
+        self._epoch[ids[ours]] = np.maximum(self._epoch[ids[ours]], message.epoch)
+        for i in np.flatnonzero(ours).tolist():
+            id = message.id[i]
             if id in self.descriptions:
                 continue  # constant after creation
             ixy, ixz, iyz = message.ixy[i], message.ixz[i], message.iyz[i]
@@ -336,6 +372,8 @@ class Picture:
                 message.body_shapes[i],
             )
             self._ids_by_name[message.name[i]] = id
+            self._unfinished.add(id)
+            self._listing = None
 
     def _merge_shapes(self, message: catalog_t) -> None:
         for i in range(message.num_shapes):
@@ -352,3 +390,11 @@ class Picture:
                 (message.red[i], message.green[i], message.blue[i], message.alpha[i]),
                 message.shape_vertices[i],
             )
+
+    def _merge_vertices(self, message: catalog_t) -> None:
+        for i in range(message.num_vertices):
+            description = self.descriptions.get(message.vertex_body[i])
+            shape = description.shapes.get(message.vertex_shape[i]) if description else None
+            if shape is not None and 0 <= message.vertex_number[i] < shape.num_vertices:
+                vertex = (message.vertex_x[i], message.vertex_y[i], message.vertex_z[i])
+                shape.vertices[message.vertex_number[i]] = vertex

@@ -6,6 +6,7 @@ A thread of the World receives and resends; every method may be called from any 
 from __future__ import annotations
 
 import contextlib
+import itertools
 import threading
 import time
 from concurrent.futures import Future
@@ -36,8 +37,11 @@ from .picture import BodyState, Description, Picture, State
 from .query import Queries
 
 PROTOCOL_VERSION = 1
-QUEUE_CAPACITY = 10000
-"""Messages LCM keeps for us; its default of 30 is less than one burst of a large world."""
+QUEUE_CAPACITY = 2000
+"""Messages of a channel that LCM keeps for us; its default of 30 is less than one burst of a large world. A quarter of
+a second of all that a server sends: who can't keep up misses states then, instead of seeing all of them late."""
+BATCH = 256
+"""Messages that are handled in a row before answers and callbacks get their turn."""
 
 
 class World:
@@ -54,6 +58,8 @@ class World:
         self.url = resolve_url(url) if bus is None else "the given bus"
         self._bus = bus or open_bus(self.url)
         self._picture = Picture()
+        self._states: List[state_t] = []  # heard, but not yet merged
+        self._packed: List[packed_t] = []
         self._outbox = Outbox(timeout)
         self._heartbeat: Optional[heartbeat_t] = None
         self._stats: Optional[stats_t] = None
@@ -109,7 +115,7 @@ class World:
     @property
     def names(self) -> List[str]:
         with self._changed:
-            return [item.name for _, item in sorted(self._picture.descriptions.items())]
+            return list(self._picture.listing()[1])
 
     @property
     def state(self) -> State:
@@ -345,8 +351,8 @@ class World:
 
     def _handlers(self) -> List[Tuple[str, Any, Callable[[Any], object]]]:
         return [
-            ("_STATE", state_t, lambda message: self._picture.merge_state(message)),
-            ("_PACKED", packed_t, lambda message: self._picture.merge_packed(message)),
+            ("_STATE", state_t, self._states.append),
+            ("_PACKED", packed_t, self._packed.append),
             ("_CONTACTS", contacts_t, lambda message: self._contacts.merge(message)),
             ("_HITS", hits_t, self._keep_hits),
             ("_CATALOG", catalog_t, lambda message: self._picture.merge_catalog(message)),
@@ -361,6 +367,8 @@ class World:
 
     def _subscribe(self, suffix: str, message_type: Any, use: Callable[[Any], object]) -> Any:
         def handle(_channel: str, data: bytes) -> None:
+            if message_type is catalog_t and self._picture.has_settled(data):
+                return
             try:
                 message = message_type.decode(data)
             except Exception:  # whatever the generated decoder stumbles over: not a message of ours
@@ -377,9 +385,21 @@ class World:
         slice_ms = int(1000 * Outbox.RESEND / 2)
         while not self._closing:
             self._bus.handle_timeout(slice_ms)
+            for _ in range(BATCH):
+                if self._bus.handle_timeout(0) <= 0:
+                    break
             with self._changed:
+                self._merge_states()
                 self._send_due()
             self._call_back()
+
+    def _merge_states(self) -> None:
+        """What was heard at once is merged at once, publication by publication: a small message has its price."""
+        for merge, heard in ((self._picture.merge_state, self._states), (self._picture.merge_packed, self._packed)):
+            for _, messages in itertools.groupby(heard, key=lambda message: (message.session, message.utime)):
+                merge(*messages)
+                self._changed.notify_all()
+            heard.clear()
 
     def _call_back(self) -> None:
         if self._callbacks and self._called_back != self._newest():

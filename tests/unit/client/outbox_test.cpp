@@ -50,6 +50,7 @@ TEST_F(OutboxTest, SendsAtOnceThenEvery50MsUntilAnswered) {
 
 TEST_F(OutboxTest, GivesUpAfterTheLimit) {
   outbox.add(1, "W_FORCE", {1}, at(0));
+  EXPECT_EQ(outbox.take_due(at(0)).size(), 1u);
   EXPECT_EQ(outbox.take_due(at(1999)).size(), 1u);
   EXPECT_EQ(outbox.answer(1), nullptr);
   EXPECT_TRUE(outbox.take_due(at(2000)).empty());
@@ -69,14 +70,15 @@ TEST_F(OutboxTest, SaysWhenItWantsToBeAskedAgain) {
 
 TEST_F(OutboxTest, KeepsTheServersReason) {
   outbox.add(1, "W_FORCE", {1}, at(0));
+  outbox.take_due(at(0));
   outbox.receive(make_ack(42, 1, Status::unknown_body, "index 99, the world has 3"));
   EXPECT_FALSE(outbox.answer(1)->accepted());
-  EXPECT_EQ(outbox.answer(1)->text(),
-            std::string(status_text(Status::unknown_body)) + ": index 99, the world has 3");
+  EXPECT_EQ(outbox.answer(1)->text(), "index 99, the world has 3") << "one sentence";
 }
 
 TEST_F(OutboxTest, IgnoresAnswersToOthersAndRepeatedOnes) {
   outbox.add(1, "W_FORCE", {1}, at(0));
+  outbox.take_due(at(0));
   outbox.receive(make_ack(43, 1, Status::applied));
   outbox.receive(make_ack(42, 2, Status::applied));
   EXPECT_EQ(outbox.answer(1), nullptr);
@@ -88,6 +90,7 @@ TEST_F(OutboxTest, IgnoresAnswersToOthersAndRepeatedOnes) {
 
 TEST_F(OutboxTest, AnAnswerAfterQueuedReplacesIt) {
   outbox.add(1, "W_FORCE", {1}, at(0));
+  outbox.take_due(at(0));
   outbox.receive(make_ack(42, 1, Status::queued));
   EXPECT_TRUE(outbox.answer(1)->accepted());
   EXPECT_TRUE(outbox.take_due(at(500)).empty());
@@ -98,6 +101,7 @@ TEST_F(OutboxTest, AnAnswerAfterQueuedReplacesIt) {
 TEST_F(OutboxTest, PicksItsAnswersOutOfAFullMessage) {
   outbox.add(5, "W_FORCE", {1}, at(0));
   outbox.add(6, "W_CONTROL", {2}, at(0));
+  outbox.take_due(at(0));
   ack_t message = make_ack(9, 5, Status::invalid);
   const ack_t own = make_ack(42, 6, Status::applied);
   message.n = 2;
@@ -112,6 +116,33 @@ TEST_F(OutboxTest, PicksItsAnswersOutOfAFullMessage) {
   EXPECT_EQ(outbox.answer(5), nullptr);
   ASSERT_NE(outbox.answer(6), nullptr);
   EXPECT_EQ(outbox.answer(6)->step, 123);
+}
+
+// A server that remembers kSequenceWindow numbers of a client must not forget one that is still on its way.
+TEST_F(OutboxTest, ManyCommandsTakeTurns) {
+  const std::int64_t count = 3 * Outbox::kWindow;
+  for (std::int64_t sequence = 1; sequence <= count; ++sequence) outbox.add(sequence, "W_FORCE", {1}, at(0));
+  EXPECT_EQ(outbox.take_due(at(0)).size(), static_cast<std::size_t>(Outbox::kWindow));
+  for (std::int64_t sequence = 2; sequence <= Outbox::kWindow; ++sequence)
+    outbox.receive(make_ack(42, sequence, Status::applied));
+  EXPECT_TRUE(outbox.take_due(at(10)).empty()) << "the first was lost, the window has not moved";
+  EXPECT_EQ(outbox.take_due(at(50)).size(), 1u);
+  outbox.receive(make_ack(42, 1, Status::applied));
+  EXPECT_EQ(outbox.take_due(at(60)).size(), static_cast<std::size_t>(Outbox::kWindow));
+}
+
+TEST_F(OutboxTest, AllThatWaitAreGivenUpTogetherWhenTheServerIsSilent) {
+  const std::int64_t count = 3 * Outbox::kWindow;
+  for (std::int64_t sequence = 1; sequence <= count; ++sequence) outbox.add(sequence, "W_FORCE", {1}, at(0));
+  outbox.take_due(at(0));
+  outbox.receive(make_ack(42, 1, Status::applied));  // the last that is heard of the server
+  EXPECT_EQ(outbox.take_due(at(1500)).size(), static_cast<std::size_t>(Outbox::kWindow));
+  EXPECT_EQ(outbox.take_due(at(2000)).size(), static_cast<std::size_t>(Outbox::kWindow)) << "a second window";
+  outbox.take_due(at(3500));
+  ASSERT_NE(outbox.answer(count), nullptr) << "the third is given up: 2 s of silence";
+  EXPECT_FALSE(outbox.answer(count)->heard);
+  outbox.take_due(at(4000));
+  EXPECT_EQ(outbox.waiting(), 0u);
 }
 
 TEST_F(OutboxTest, SequencesRise) {

@@ -141,7 +141,8 @@ Outcome Simulation::restore_snapshot(const std::string& name) {
     std::string names;
     for (const auto& [known, state] : kept_) names.append(names.empty() ? "" : ", ").append(known);
     return {.status = Status::invalid,
-            .detail = fmt::format("no snapshot \"{}\", only: {}", name, names.empty() ? "none" : names)};
+            .detail = fmt::format("no snapshot is called \"{}\"; there is {}", name,
+                                  names.empty() ? "none" : names)};
   }
   start_session(*kept->second);
   return done();

@@ -39,7 +39,9 @@ void CommandInbox::receive(Bytes bytes) {
   // Not entered in the history: the sound original of a damaged copy may still come.
   const Sender sender = read_sender(bytes);
   if (sender.client != 0 && sender.sequence > 0 && history_.find(sender.client, sender.sequence) == nullptr) {
-    answer(sender.client, sender.sequence, {.status = Status::malformed, .detail = malformed_text(reason)});
+    answer(sender.client, sender.sequence,
+           {.status = Status::malformed,
+            .detail = fmt::format("the message is damaged: {}", malformed_text(reason))});
   }
 }
 
@@ -63,13 +65,16 @@ void CommandInbox::admit(const Message& message) {
   const std::int64_t start = std::max(message.start_step, step_);
   Outcome outcome = check_values(message);
   if (message.session != 0 && message.session != session_) {
-    outcome = {.status = Status::wrong_session, .detail = fmt::format("the session is {}", session_)};
+    outcome = {.status = Status::wrong_session,
+               .detail = fmt::format("session: {} is not this one, {}", message.session, session_)};
   } else if (message.expiry_step != 0 && message.expiry_step < start) {
-    outcome = {.status = Status::expired,
-               .detail = fmt::format("it could act at step {} at the earliest", start)};
+    outcome = {
+        .status = Status::expired,
+        .detail = fmt::format("expiry_step: {} is before step {}, the earliest", message.expiry_step, start)};
   } else if (outcome.status == Status::applied &&
              pending_.size() >= (start > step_ ? kMaxWaiting : kMaxPending)) {
-    outcome = {.status = Status::queue_full, .detail = fmt::format("{} commands wait", pending_.size())};
+    outcome = {.status = Status::queue_full,
+               .detail = fmt::format("too many commands wait: {}", pending_.size())};
   }
   if (outcome.status != Status::applied) return settle(client, sequence, std::move(outcome));
   const Command command{client, sequence, message.session, message.expiry_step, message};
@@ -101,8 +106,10 @@ std::vector<Command> CommandInbox::take_due() {
   for (auto it = pending_.begin(); it != end; ++it) {
     Command& command = it->second;
     if (command.expiry_step != 0 && command.expiry_step < step_) {
-      settle(command.client, command.sequence,
-             {.status = Status::expired, .detail = fmt::format("the step is already {}", step_)});
+      settle(
+          command.client, command.sequence,
+          {.status = Status::expired,
+           .detail = fmt::format("expiry_step: {} has passed, the step is {}", command.expiry_step, step_)});
     } else {
       due.push_back(std::move(command));
     }

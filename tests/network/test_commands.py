@@ -1,5 +1,6 @@
 """Every command is answered, applied at most once, and refused with the reason."""
 import math
+import re
 
 import pytest
 
@@ -61,20 +62,20 @@ def test_start_step_is_kept(free_bodies, wire):
     assert answer.applied_step == start
 
 
-@pytest.mark.parametrize("fields, status", [
-    ({"body": 999}, UNKNOWN_BODY),
-    ({"body": -1}, UNKNOWN_BODY),
-    ({"generation": 77}, STALE_GENERATION),
-    ({"force": (math.nan, 0.0, 0.0)}, NOT_FINITE),
-    ({"torque": (0.0, math.inf, 0.0)}, NOT_FINITE),
-    ({"duration": -math.inf}, NOT_FINITE),
-    ({"force": (1e300, 0.0, 0.0)}, OUT_OF_RANGE),
-    ({"duration": -1.0}, OUT_OF_RANGE),
-    ({"frame": 7}, OUT_OF_RANGE),
-    ({"expiry_step": 1}, EXPIRED),
-    ({"session": 12345}, WRONG_SESSION),
+@pytest.mark.parametrize("fields, status, reason", [
+    ({"body": 999}, UNKNOWN_BODY, "no body has the index 999"),
+    ({"body": -1}, UNKNOWN_BODY, "no body has the index -1"),
+    ({"generation": 77}, STALE_GENERATION, r"body \d+ has generation 1, not 77"),
+    ({"force": (math.nan, 0.0, 0.0)}, NOT_FINITE, "a number is infinite or not a number"),
+    ({"torque": (0.0, math.inf, 0.0)}, NOT_FINITE, "a number is infinite or not a number"),
+    ({"duration": -math.inf}, NOT_FINITE, "a number is infinite or not a number"),
+    ({"force": (1e300, 0.0, 0.0)}, OUT_OF_RANGE, r"force: 1e\+300 is not in -10+ .. 10+"),
+    ({"duration": -1.0}, OUT_OF_RANGE, r"duration: -1 is not in 0 .. \d+"),
+    ({"frame": 7}, OUT_OF_RANGE, "frame: 7 is not in 0 .. 1"),
+    ({"expiry_step": 1}, EXPIRED, r"expiry_step: 1 is before step \d+, the earliest"),
+    ({"session": 12345}, WRONG_SESSION, r"session: 12345 is not this one, \d+"),
 ])
-def test_refused_forces_say_why_and_change_nothing(free_bodies, wire, fields, status):
+def test_refused_forces_say_why_and_change_nothing(free_bodies, wire, fields, status, reason):
     ball = wire.bodies()["ball"]
     wire.next("STATE", condition=lambda m: m.step > 2)
     refused = wire.next("STATS").commands_refused
@@ -83,7 +84,7 @@ def test_refused_forces_say_why_and_change_nothing(free_bodies, wire, fields, st
         setattr(command, name, value)
     answer = wire.ask(command)
     assert (answer.status, answer.applied_step) == (status, -1)
-    assert answer.detail
+    assert re.fullmatch(reason, answer.detail)
     assert ball_momentum(wire, ball) == 0.0
     assert wire.next("STATS").commands_refused == refused + 1
 
@@ -131,6 +132,6 @@ def test_a_full_queue_is_said_and_loses_nothing_that_was_accepted(free_bodies, w
     assert {answer.status for answer in wire.answers()} == {QUEUED}
     assert len(wire.answers()) == MAX_WAITING
     refused = wire.ask(wire.force(body=ball[0], generation=ball[1], start_step=start))
-    assert (refused.status, refused.detail) == (QUEUE_FULL, f"{MAX_WAITING} commands wait")
+    assert (refused.status, refused.detail) == (QUEUE_FULL, f"too many commands wait: {MAX_WAITING}")
     # Those that wait do not shut out what acts at once.
     assert wire.ask(wire.force(body=ball[0], generation=ball[1], force=PUSH)).status == APPLIED

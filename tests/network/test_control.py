@@ -134,3 +134,8 @@ def test_every_subcommand_speaks_json(free_bodies, wire):
             _, end = decoder.raw_decode(text)
             text, found = text[end:].strip(), found + 1
         assert found >= 1, arguments
+
+
+def test_a_refusal_is_one_sentence(free_bodies):
+    done = run_tumble("restore", "x")
+    assert (done.returncode, done.stdout, done.stderr) == (1, "", 'tumble: x: refused: no snapshot is called "x"; there is none\n')

@@ -91,6 +91,8 @@ def test_callbacks(world):
 def test_refusals_are_exceptions_with_the_reason(world):
     with pytest.raises(Refused, match="name"):
         world.spawn("ball", "sphere", 0.1, at=(0, 0, 5))
+    with pytest.raises(Refused, match='^no snapshot is called "x"; there is none$'):
+        world.restore("x")
     with pytest.raises(Refused, match="force"):
         world["ball"].push(force=(1e300, 0, 0))
 

@@ -40,14 +40,36 @@ namespace tumble {
 
 static_assert(std::endian::native == std::endian::little);
 
+/// Bytes of what is made of numbers without gaps: written as it lies in memory. 0: of everything else.
+template <typename T>
+inline constexpr std::size_t kFlatBytes = std::is_arithmetic_v<T> || std::is_enum_v<T> ? sizeof(T) : 0;
+template <int kRows, int kColumns>
+inline constexpr std::size_t kFlatBytes<Eigen::Matrix<double, kRows, kColumns>> =
+    kRows > 0 && kColumns > 0 ? sizeof(double) * static_cast<std::size_t>(kRows* kColumns) : 0;
+template <>
+inline constexpr std::size_t kFlatBytes<Quat> = sizeof(Quat);
+
 /// Overwrites `bytes`, whose memory it uses again; they are whole once the archive is gone.
 class OutputArchive : public cereal::OutputArchive<OutputArchive, cereal::AllowEmptyClassElision> {
+  using Base = cereal::OutputArchive<OutputArchive, cereal::AllowEmptyClassElision>;
+
  public:
-  explicit OutputArchive(std::string& bytes)
-      : cereal::OutputArchive<OutputArchive, cereal::AllowEmptyClassElision>(this), bytes_(bytes) {}
+  explicit OutputArchive(std::string& bytes) : Base(this), bytes_(bytes) {}
   OutputArchive(const OutputArchive&) = delete;
   OutputArchive& operator=(const OutputArchive&) = delete;
   ~OutputArchive() { bytes_.resize(static_cast<std::size_t>(at_ - bytes_.data())); }
+
+  template <typename... Types>
+  OutputArchive& operator()(Types&&... objects) {
+    if constexpr ((... && (kFlatBytes < std::remove_cvref_t < Types >>> 0))) {
+      write_flat(objects...);
+    } else if constexpr (sizeof...(objects) == 1) {
+      (Base::operator()(objects), ...);
+    } else {
+      ((*this)(objects), ...);
+    }
+    return *this;
+  }
 
   [[gnu::always_inline]] void transfer(const void* data, std::size_t size) {
     if (static_cast<std::size_t>(end_ - at_) < size) grow(size);
@@ -56,6 +78,15 @@ class OutputArchive : public cereal::OutputArchive<OutputArchive, cereal::AllowE
   }
 
  private:
+  /// Those in a row ask for their place once.
+  template <typename... Flat>
+  [[gnu::always_inline]] void write_flat(const Flat&... objects) {
+    constexpr std::size_t size = (... + kFlatBytes<Flat>);
+    if (static_cast<std::size_t>(end_ - at_) < size) grow(size);
+    char* at = at_;  // a copy: what is written might be at_ itself, for all the compiler knows
+    ((std::memcpy(at, &objects, kFlatBytes<Flat>), at += kFlatBytes<Flat>), ...);
+    at_ = at;
+  }
   [[gnu::noinline]] void grow(std::size_t size) {
     const auto used = static_cast<std::size_t>(at_ - bytes_.data());
     bytes_.resize(2 * bytes_.size() + size);

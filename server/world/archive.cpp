@@ -276,8 +276,9 @@ template <typename Archive>
 void serialize(Archive& archive, Contact& contact) {
   auto& [pair, body_a, body_b, friction, restitution, rolling, torsional, threshold, fast, flies, cache,
          manifold, normal_W, impulse, moment] = contact;
-  archive(pair, body_a, body_b, friction, restitution, rolling, torsional, threshold, fast, flies, cache,
-          manifold, normal_W);
+  archive(pair);
+  archive(body_a, body_b, friction, restitution, rolling, torsional, threshold, fast, flies);
+  archive(cache, manifold, normal_W);
   for (std::size_t i = 0; i < static_cast<std::size_t>(manifold.count); ++i) archive(impulse[i], moment[i]);
 }
 template <>

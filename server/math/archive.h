@@ -45,9 +45,11 @@ template <typename T>
 inline constexpr std::size_t kFlatBytes = std::is_arithmetic_v<T> || std::is_enum_v<T> ? sizeof(T) : 0;
 template <int kRows, int kColumns>
 inline constexpr std::size_t kFlatBytes<Eigen::Matrix<double, kRows, kColumns>> =
-    kRows > 0 && kColumns > 0 ? sizeof(double) * static_cast<std::size_t>(kRows* kColumns) : 0;
+    kRows > 0 && kColumns > 0 ? sizeof(Eigen::Matrix<double, kRows, kColumns>) : 0;
 template <>
 inline constexpr std::size_t kFlatBytes<Quat> = sizeof(Quat);
+template <typename T>
+inline constexpr bool kIsFlat = kFlatBytes<std::remove_cvref_t<T>> != 0;
 
 /// Overwrites `bytes`, whose memory it uses again; they are whole once the archive is gone.
 class OutputArchive : public cereal::OutputArchive<OutputArchive, cereal::AllowEmptyClassElision> {
@@ -61,7 +63,7 @@ class OutputArchive : public cereal::OutputArchive<OutputArchive, cereal::AllowE
 
   template <typename... Types>
   OutputArchive& operator()(Types&&... objects) {
-    if constexpr ((... && (kFlatBytes < std::remove_cvref_t < Types >>> 0))) {
+    if constexpr ((... && kIsFlat<Types>)) {
       write_flat(objects...);
     } else if constexpr (sizeof...(objects) == 1) {
       (Base::operator()(objects), ...);

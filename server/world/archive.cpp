@@ -274,11 +274,11 @@ void serialize(Archive& archive, Push& push) {
 /// Impulses of the points that are there.
 template <typename Archive>
 void serialize(Archive& archive, Contact& contact) {
-  auto& [pair, body_a, body_b, friction, restitution, rolling, torsional, threshold, fast, flies, cache,
-         manifold, normal_W, impulse, moment] = contact;
+  auto& [pair, body_a, body_b, friction, restitution, rolling, torsional, threshold, fast, flies, manifold,
+         normal_W, cache, impulse, moment] = contact;
   archive(pair);
   archive(body_a, body_b, friction, restitution, rolling, torsional, threshold, fast, flies);
-  archive(cache, manifold, normal_W);
+  archive(manifold, normal_W, cache);
   for (std::size_t i = 0; i < static_cast<std::size_t>(manifold.count); ++i) archive(impulse[i], moment[i]);
 }
 template <>

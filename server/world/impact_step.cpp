@@ -2,6 +2,7 @@
 // problem of those in resting contact; pairs left out of that problem are followed to their times of impact. At an impact
 // its bodies and all that rests against them are moved there, struck (reflection.h), and go on with new trajectories
 // through the rest of the step. World frame; times from the start of the step.
+#include <algorithm>
 #include <cmath>
 
 #include "dynamics/reflection.h"
@@ -100,6 +101,35 @@ void World::begin_impacts() {
     events.form_group({bodies + islands.body_begin[island], bodies + islands.body_begin[island + 1]});
   }
   scratch_.contacts_indexed = false;
+  scratch_.meets_flying.assign(body_capacity(), 0);
+  for (const std::uint32_t index : scratch_.flying) {
+    const Contact& contact = contacts_.all()[index];
+    scratch_.meets_flying[contact.body_a] = scratch_.meets_flying[contact.body_b] = 1;
+  }
+}
+
+bool World::meets_flying(std::size_t island) const {
+  const Islands& islands = scratch_.islands;
+  const auto begin = islands.bodies.begin() + islands.body_begin[island],
+             end = islands.bodies.begin() + islands.body_begin[island + 1];
+  return std::any_of(begin, end, [this](std::uint32_t slot) { return scratch_.meets_flying[slot] != 0; });
+}
+
+/// What strikes elsewhere is not to change a bit of it: the island is moved as in any step, and the way there is drawn
+/// between, for somebody may still be thrown into it.
+void World::advance_undisturbed(std::size_t island, const StepContext& step) {
+  const Islands& islands = scratch_.islands;
+  const std::uint32_t begin = islands.body_begin[island], end = islands.body_begin[island + 1];
+  std::vector<Motion>& starts = scratch_.way_starts;
+  starts.clear();
+  for (std::uint32_t i = begin; i < end; ++i) starts.push_back(motions_[islands.bodies[i]]);
+  StepContext whole = step;
+  whole.ways_only = false;
+  advance_connected(island, whole);
+  for (std::uint32_t i = begin; i < end; ++i) {
+    const std::uint32_t slot = islands.bodies[i];
+    if (awake(slot)) note_end(slot, starts[i - begin], step);
+  }
 }
 
 const Trajectory& World::way(std::uint32_t slot) {
@@ -133,6 +163,14 @@ void World::advance_impacts(const StepContext& step) {
         undisturbed ? motion_in_flight(slot, step_count_ + 1) : events.trajectory(slot).at(step.h);
     if (!is_finite(motions_[slot])) contain(slot, last_good);
   }
+  hold_struck_joints(step);
+}
+
+void World::hold_struck_joints(const StepContext& step) {
+  if (ties_.empty() || options_.joint_passes < 2 || !solves_exactly(options_.solver)) return;
+  for (std::size_t island = 0; island < scratch_.islands.count(); ++island) {
+    if (meets_flying(island)) project_joints(island, step);
+  }
 }
 
 void World::strike(const ImpactEvent& event, const StepContext& step) {
@@ -141,6 +179,7 @@ void World::strike(const ImpactEvent& event, const StepContext& step) {
   rest.h = step.h - event.time;
   Blow blow = gather_blow(event);
   absorb_tired(blow);
+  for (const std::uint32_t slot : blow.members) scratch_.meets_flying[slot] = 1;
   move_to(blow, event.time);
   update_contacts_of(blow, rest);
   resolve_blow(blow, rest);

@@ -86,7 +86,7 @@ bool World::solve_velocities(const StepContext& step) {
   ContactProblem& problem = scratch_.problem;
   SolverSettings settings = step.solver_settings;
   if (options_.work_rate > 0.0) settings.work_left = work_saved_;
-  const bool refines = refines_joints(step);
+  const bool refines = refines_joints();
   if (refines) scratch_.free_bodies = problem.bodies;
   for (int pass = 1;; ++pass) {
     const SolverReport solved = step.solve(problem, settings);

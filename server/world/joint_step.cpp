@@ -17,9 +17,9 @@ constexpr double kStays = 1e-11;
 
 }  // namespace
 
-bool World::refines_joints(const StepContext& step) const {
+bool World::refines_joints() const {
   const std::vector<ScalarRow>& rows = scratch_.problem.rows;
-  return options_.joint_passes > 1 && solves_exactly(options_.solver) && !step.ways_only &&
+  return options_.joint_passes > 1 && solves_exactly(options_.solver) &&
          std::any_of(rows.begin(), rows.end(),
                      [](const ScalarRow& row) { return row.is_two_sided() && !row.is_soft(); });
 }
@@ -68,8 +68,12 @@ double World::turn_inertia(std::uint32_t i, double h, SolverBody& free) {
 }
 
 void World::hold_joints(std::size_t island, const StepContext& part) {
-  if (!refines_joints(part)) return;
+  if (!part.ways_only && refines_joints()) project_joints(island, part);
+}
+
+void World::project_joints(std::size_t island, const StepContext& part) {
   build_joint_problem(island, part);
+  if (scratch_.problem.rows.empty()) return;
   if (close_joints(part)) build_joint_problem(island, part);
   ContactProblem& problem = scratch_.problem;
   double fastest = 0.0;

@@ -1,7 +1,6 @@
 // The step, as a table of contents, and its stages up to the islands. World frame, SI units.
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <utility>
 
 #include "dynamics/time_of_impact.h"
@@ -27,6 +26,9 @@ void drop_repeated_points(std::vector<Contact>& contacts, std::uint32_t index) {
     manifold.count = static_cast<int>(std::remove_if(begin, begin + manifold.count, named_before) - begin);
   }
 }
+
+/// [B] of a contact that a visit reads: its pair; its manifold; all of it.
+constexpr std::size_t kKey = 64, kHead = 256, kWhole = sizeof(Contact);
 
 /// [steps] A pair is left to its ways for no less, which would cost more than to look at it, and for no more, so that it is
 /// soon forgotten once its boxes have come apart.
@@ -133,8 +135,9 @@ void World::contain_overloaded(const StepContext& step) {
 }
 
 Pose World::geometry_pose(const Geometry& geometry) const {
-  const Motion motion = this->motion(geometry.body);
-  return Pose{motion.q, motion.x} * geometry.X_BS;
+  const std::uint32_t slot = geometry.body;
+  const auto pose = [&](const Motion& motion) { return Pose{motion.q, motion.x} * geometry.X_BS; };
+  return aloft(slot) ? pose(motion_in_flight(slot, step_count_)) : pose(motions_[slot]);
 }
 
 Aabb World::contact_bounds(const Geometry& geometry, double h) const {
@@ -169,8 +172,9 @@ void World::update_pairs(const StepContext& step) {
   find_pairs();
   recall_clear_pairs();
   scratch_.lost.clear();
-  std::copy_if(active_contacts_.begin(), active_contacts_.end(), std::back_inserter(scratch_.lost),
-               [this](std::uint32_t index) { return is_lost(contacts_.all()[index].pair); });
+  contacts_.visit<kKey>(active_contacts_, [this](std::uint32_t index) {
+    if (is_lost(contacts_.all()[index].pair)) scratch_.lost.push_back(index);
+  });
   if (!scratch_.lost.empty()) {
     contacts_.remove(scratch_.lost);
     active_stale_ = true;
@@ -284,12 +288,12 @@ double World::pair_margin(Contact& contact, const StepContext& step, std::uint64
 
 void World::update_contacts(const StepContext& step) {
   scratch_.lost.clear();
-  for (const std::uint32_t index : active_contacts_) {
+  contacts_.visit<kWhole>(active_contacts_, [&](std::uint32_t index) {
     const double margin = update_contact(index, step);
     const Contact& contact = contacts_.all()[index];
     if (options_.skip_flying && contact.manifold.count == 0 && leave_if_clear(contact, margin, step_count_))
       scratch_.lost.push_back(index);
-  }
+  });
   if (!scratch_.lost.empty()) {
     contacts_.remove(scratch_.lost);
     clear_pairs_.settle();
@@ -400,19 +404,19 @@ void World::build_islands(const StepContext& step) {
   const auto end = [this](std::uint32_t slot) {
     return slot != kWorld && movable(slot) ? slot : IslandEdge::kImmovable;
   };
-  for (const std::uint32_t index : active_contacts_) {
+  contacts_.visit<kHead>(active_contacts_, [&](std::uint32_t index) {
     Contact& contact = contacts_.all()[index];
     const bool may_strike = contact.manifold.count == 0 || contact.restitution > 0.0 || contact.fast;
     contact.flies = step.impact_events && may_strike && flies(contact, step.h);
-    if (contact.manifold.count == 0) continue;
+    if (contact.manifold.count == 0) return;
     if (contact.flies) {
       contact.impulse.fill(Vec3::Zero());
       scratch_.flying.push_back(index);
-      continue;
+      return;
     }
     scratch_.edges.push_back({end(contact.body_a), end(contact.body_b)});
     scratch_.edge_source.push_back(index);
-  }
+  });
   for (std::uint32_t index = 0; index < ties_.size(); ++index) {
     const IslandEdge edge{end(ties_[index].a), end(ties_[index].b)};
     const bool a = edge.a != IslandEdge::kImmovable && awake(edge.a);
@@ -434,6 +438,8 @@ void World::advance_islands(const StepContext& whole_step) {
   for (std::size_t island = 0; island < islands.count(); ++island) {
     if (islands.edge_begin[island] == islands.edge_begin[island + 1]) {
       advance_free(islands.bodies[islands.body_begin[island]], step);
+    } else if (step.ways_only && !meets_flying(island)) {
+      advance_undisturbed(island, step);
     } else {
       advance_connected(island, step);
     }
@@ -456,11 +462,11 @@ void World::update_report() {
   report_.deepest_penetration = resting_penetration_;
   report_.max_residual = step_residual_;
   report_.push_work = step_push_work_;
-  for (const std::uint32_t index : active_contacts_) {
+  contacts_.visit<kHead>(active_contacts_, [this](std::uint32_t index) {
     const Manifold& manifold = contacts_.all()[index].manifold;
     report_.contacts += static_cast<std::uint32_t>(manifold.count);
     report_.deepest_penetration = std::max(report_.deepest_penetration, deepest(manifold));
-  }
+  });
   counters_.bodies_skipped_resting += report_.bodies_resting;
 }
 

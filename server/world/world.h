@@ -13,16 +13,13 @@
 
 #include "collision/broad_phase.h"
 #include "dynamics/flight.h"
-#include "dynamics/island.h"
-#include "dynamics/pattern_store.h"
-#include "dynamics/smooth_motion.h"
 #include "world/clear_pairs.h"
 #include "world/contact_graph.h"
 #include "world/definition.h"
 #include "world/diagnostics.h"
-#include "world/impact_events.h"
 #include "world/options.h"
 #include "world/part.h"
+#include "world/scratch.h"
 
 namespace tumble {
 
@@ -154,45 +151,6 @@ class World {
     Vec3 pA, pB;
     std::variant<Spring, Rope, Joint> law;
     std::array<double, Joint::kMostRows> lambda{};  // of its rows: warm start [N s]
-  };
-  /// Thrown away at any time; kept so that a step allocates nothing after warm-up.
-  struct Scratch {
-    std::vector<Load> load;  // by slot, nothing between steps
-    std::vector<std::uint32_t> loaded;
-    std::vector<GeometryPair> pairs;
-    std::vector<GeometryPair> whole_pairs, split_pairs;  // pairs as found; those of them with a surface
-    std::vector<std::uint32_t> triangles;
-    std::vector<std::uint32_t> near;  // geometries in the box of a flight
-    std::vector<std::uint32_t> lost;  // contacts whose boxes came apart, or that are clear, ascending
-    std::vector<IslandEdge> edges;
-    std::vector<std::uint32_t> edge_source;  // contact index, or contacts().size() + tie index
-    IslandBuilder builder;
-    Islands islands;
-    SmoothSystem smooth;
-    ContactProblem problem;
-    PatternStore patterns;
-    std::vector<std::uint32_t> problem_slot;    // slot of each body of the problem
-    std::vector<std::uint32_t> local;           // by slot: index in the problem, or kWorld
-    std::vector<ContactSource> contact_source;  // also of turnings, by their contacts
-    struct RowSource {
-      std::uint32_t tie, row;
-    };
-    std::vector<RowSource> row_source;
-    std::vector<AfterForces> after_forces;  // of the problem's movable bodies, before the impulses
-    ImpactEvents events;
-    std::vector<std::uint32_t> flying;                    // contacts that may strike in this step
-    std::vector<std::vector<std::uint32_t>> contacts_of;  // by slot; filled at the first impact of a step
-    bool contacts_indexed = false;
-    std::vector<std::pair<std::uint32_t, Motion>> held;  // slots that pushes would carry beyond all numbers
-    std::vector<SolverBody> free_bodies;                 // before joints are solved for
-    std::vector<double> opened;                          // by contact of a taut island [m]
-    std::vector<double> swing_square;                    // by body of the problem [1/s^2]
-    double residual = 0.0;                               // [m/s] of the problem's solution
-    IslandState part_start, landing_start;               // to go back to from a trial
-    std::vector<std::uint32_t> island_contacts;
-    double shifted = 0.0;               // [m + rad] longest way by which it takes its overlaps back
-    double impulse_share = 1.0;         // of a whole step's impulses that the problem's are
-    std::uint32_t problem_movable = 0;  // the first bodies of the problem; the rest are immovable partners
   };
   /// What takes part in one impact: bodies that act on each other through contacts and ties, and the pairs that strike.
   struct Blow {
@@ -359,10 +317,11 @@ class World {
   /// rounding, and what their arms turned since they were solved.
   void hold_touches(std::size_t island, const std::vector<Touch>& touches, const StepContext& part);
   // joint_step.cpp: joints by their arms in the middle of the step.
-  bool refines_joints(const StepContext& step) const;
+  bool refines_joints() const;
   bool update_joint_arms(const StepContext& step, std::vector<SolverBody>& free);
   double turn_inertia(std::uint32_t problem_body, double h, SolverBody& free);
   void hold_joints(std::size_t island, const StepContext& part);
+  void project_joints(std::size_t island, const StepContext& part);
   void build_joint_problem(std::size_t island, const StepContext& part);
   bool close_joints(const StepContext& part);
 
@@ -419,6 +378,9 @@ class World {
   /// Of b relative to a, by forces [m/s^2].
   Vec3 relative_acceleration(const Contact& contact) const;
   void begin_impacts();
+  bool meets_flying(std::size_t island) const;
+  void advance_undisturbed(std::size_t island, const StepContext& step);
+  void hold_struck_joints(const StepContext& step);
   /// Made when it is asked for, if the body has not been given one in this step.
   const Trajectory& way(std::uint32_t slot);
   void advance_impacts(const StepContext& step);

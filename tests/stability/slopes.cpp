@@ -1,6 +1,7 @@
 // On the border of stick and slip: nothing creeps, and nothing rests that must slide.
 #include <cmath>
 
+#include "math/rotation.h"
 #include "stability/case.h"
 #include "support/gravity.h"
 #include "support/world_builder.h"
@@ -57,7 +58,7 @@ void balances(Trial& trial) {
   World world(trial.options());
   world.create_body(ground());
   BodyDefinition corner = body_of_mass("corner", Box{Vec3(0.5, 0.5, 0.5)}, 1.0, Vec3(0, 0, std::sqrt(0.75)));
-  corner.X_WL.q = Quat::FromTwoVectors(Vec3(1, 1, 1), Vec3::UnitZ());
+  corner.X_WL.q = rotation_to_normal(Vec3(1, 1, 1).normalized()).conjugate();
   world.create_body(corner);
   BodyDefinition edge = body_of_mass("edge", Box{Vec3(0.5, 0.5, 0.5)}, 1.0, Vec3(5, 0, std::sqrt(0.5)));
   edge.X_WL.q = exp_map(Vec3(std::atan(1.0), 0, 0));

@@ -193,7 +193,7 @@ PlacedPair face_to_face(RandomPose& random, const HullPointer& a, const HullPoin
   const double tilt = tilts[static_cast<std::size_t>(random.uniform(0.0, 3.999))];
   const Vec3 axis = random.direction(), aside = 0.2 * random.direction();
   const double depth = random.log_uniform(1e-6, 1e-2) * std::min(a->radius, b->radius);
-  const Quat q = turn(axis, tilt) * Quat::FromTwoVectors(n_B, -n_A);
+  const Quat q = turn(axis, tilt) * rotation_to_normal(-n_A) * rotation_to_normal(n_B).conjugate();
   return push_together(random, a, b, normalized(q), n_A, depth, aside - aside.dot(n_A) * n_A);
 }
 

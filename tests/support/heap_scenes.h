@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "math/rotation.h"
 #include "support/standing_scenes.h"
 
 namespace tumble::test {
@@ -31,7 +32,7 @@ inline World heap(const Options& options, std::size_t count, std::size_t width, 
     BodyDefinition wall = body("wall" + std::to_string(side), HalfSpace{},
                                Vec3(-half * std::cos(angle), -half * std::sin(angle), 0));
     wall.type = BodyType::fixed;
-    wall.X_WL.q = Quat::FromTwoVectors(Vec3::UnitZ(), Vec3(std::cos(angle), std::sin(angle), 0));
+    wall.X_WL.q = rotation_to_normal(Vec3(std::cos(angle), std::sin(angle), 0));
     world.create_body(wall);
   }
   for (std::size_t i = 0; i < count; ++i) {

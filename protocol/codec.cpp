@@ -4,6 +4,7 @@
 
 #include <bit>
 #include <cmath>
+#include <initializer_list>
 #include <span>
 
 #include "protocol/layout.h"
@@ -15,11 +16,18 @@ namespace {
 constexpr std::size_t kClientOffset = kFingerprint + 16, kSequenceOffset = kFingerprint + 24;
 constexpr std::size_t kSenderBytes = kFingerprint + 32;
 
-bool finite(std::span<const double> values) {
-  for (const double value : values) {
-    if (!std::isfinite(value)) return false;
+struct Field {
+  const char* name;
+  std::span<const double> values;
+};
+
+const char* first_not_finite(std::initializer_list<Field> fields) {
+  for (const Field& field : fields) {
+    for (const double value : field.values) {
+      if (!std::isfinite(value)) return field.name;
+    }
   }
-  return true;
+  return nullptr;
 }
 
 }  // namespace
@@ -95,23 +103,31 @@ Sender read_sender(Bytes bytes) {
           std::bit_cast<std::int64_t>(read_u64(bytes, kSequenceOffset))};
 }
 
-bool all_finite(const force_command_t& command) {
-  return finite(command.force) && finite(command.torque) && finite(command.point) &&
-         std::isfinite(command.duration);
+const char* find_not_finite(const force_command_t& c) {
+  return first_not_finite(
+      {{"force", c.force}, {"torque", c.torque}, {"point", c.point}, {"duration", {&c.duration, 1}}});
 }
 
-bool all_finite(const query_t& query) {
-  return finite(query.origin) && finite(query.direction) && finite(query.size) && finite(query.orientation) &&
-         std::isfinite(query.length);
+const char* find_not_finite(const query_t& query) {
+  return first_not_finite({{"origin", query.origin},
+                           {"direction", query.direction},
+                           {"size", query.size},
+                           {"orientation", query.orientation},
+                           {"length", {&query.length, 1}}});
 }
 
-bool all_finite(const control_t& command) {
-  for (const float value : command.color) {
-    if (!std::isfinite(value)) return false;
+const char* find_not_finite(const control_t& c) {
+  for (const float value : c.color) {
+    if (!std::isfinite(value)) return "color";
   }
-  return finite(command.size) && finite(command.position) && finite(command.orientation) &&
-         finite(command.velocity) && finite(command.angular_velocity) && std::isfinite(command.mass) &&
-         std::isfinite(command.friction) && std::isfinite(command.restitution);
+  return first_not_finite({{"size", c.size},
+                           {"position", c.position},
+                           {"orientation", c.orientation},
+                           {"velocity", c.velocity},
+                           {"angular_velocity", c.angular_velocity},
+                           {"mass", {&c.mass, 1}},
+                           {"friction", {&c.friction, 1}},
+                           {"restitution", {&c.restitution, 1}}});
 }
 
 }  // namespace tumble

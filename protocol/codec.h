@@ -46,7 +46,7 @@ struct Sender {
 using Bytes = std::span<const std::uint8_t>;
 
 /// Decode `bytes` into `message`; on any reason but `none` its content is undefined. Never throws, never allocates
-/// more than the bytes hold. Numbers may be non-finite: see `all_finite`.
+/// more than the bytes hold. Numbers may be non-finite: see `find_not_finite`.
 Malformed decode(Bytes bytes, force_command_t& message);
 Malformed decode(Bytes bytes, control_t& message);
 Malformed decode(Bytes bytes, heartbeat_t& message);
@@ -67,10 +67,10 @@ Malformed decode(Bytes bytes, snapshot_t& message);
 /// The sender of a force_command_t or control_t that `decode` refused; {0, 0} if the bytes don't name one.
 Sender read_sender(Bytes bytes);
 
-/// True if every floating-point number of the command is finite.
-bool all_finite(const force_command_t& command);
-bool all_finite(const control_t& command);
-bool all_finite(const query_t& query);
+/// Name of the first field with a number that is not finite; null if there is none.
+const char* find_not_finite(const force_command_t& command);
+const char* find_not_finite(const control_t& command);
+const char* find_not_finite(const query_t& query);
 
 /// The message as bytes, fingerprint first; `bytes` keeps its capacity.
 template <typename Message>

@@ -122,7 +122,9 @@ hits_t answer_query(const World& world, const query_t& query, std::size_t payloa
   hits_t answer = make_answer(query);
   answer.step = static_cast<std::int64_t>(world.step_count());
   answer.time = world.time();
-  if (!all_finite(query)) return refuse_query(query, Status::not_finite, status_text(Status::not_finite));
+  if (const char* field = find_not_finite(query))
+    return refuse_query(query, Status::not_finite,
+                        std::string(field) + ": " + status_text(Status::not_finite));
   try {
     const std::vector<Hit> hits = find_hits(world, query);
     const std::size_t room = rows_that_fit(payload_limit, kBytesPerHit, answer);

@@ -37,8 +37,9 @@ class RangeCheck {
   std::optional<std::string> failed_;
 };
 
-Outcome refuse_not_finite() {
-  return {.status = Status::not_finite, .detail = status_text(Status::not_finite)};
+Outcome refuse_not_finite(const char* field) {
+  return {.status = Status::not_finite,
+          .detail = fmt::format("{}: {}", field, status_text(Status::not_finite))};
 }
 
 void check_motion(const control_t& c, RangeCheck& check) {
@@ -69,7 +70,7 @@ void check_spawn(const control_t& c, RangeCheck& check) {
 }  // namespace
 
 Outcome check_values(const force_command_t& c) {
-  if (!all_finite(c)) return refuse_not_finite();
+  if (const char* field = find_not_finite(c)) return refuse_not_finite(field);
   return RangeCheck()
       .within("frame", c.frame, force_command_t::FRAME_WORLD, force_command_t::FRAME_BODY)
       .within("force", c.force, -kMaxForce, kMaxForce)
@@ -83,7 +84,7 @@ Outcome check_values(const control_t& c) {
   if (c.verb < control_t::VERB_SPAWN || c.verb > control_t::VERB_PUSHES_OFF) {
     return {.status = Status::unknown_verb, .detail = fmt::format("verb: {} is not known", c.verb)};
   }
-  if (!all_finite(c)) return refuse_not_finite();
+  if (const char* field = find_not_finite(c)) return refuse_not_finite(field);
   RangeCheck check;
   if (c.verb == control_t::VERB_SPAWN) check_spawn(c, check);
   if (c.verb == control_t::VERB_SET_STATE) check_motion(c, check);

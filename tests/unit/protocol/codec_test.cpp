@@ -171,26 +171,32 @@ TEST(Codec, TheSenderOfADamagedCommandIsKnown) {
   EXPECT_EQ(read_sender(Bytes(bytes.data(), 39)).client, 0);
 }
 
-TEST(Codec, NonFiniteNumbersAreSeenWhereverTheyStand) {
-  const double nan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_TRUE(all_finite(make_force()));
-  EXPECT_TRUE(all_finite(make_spawn()));
+TEST(Codec, NonFiniteNumbersAreNamedWhereverTheyStand) {
+  EXPECT_EQ(find_not_finite(make_force()), nullptr);
+  EXPECT_EQ(find_not_finite(make_spawn()), nullptr);
   force_command_t force = make_force();
-  for (double* field : {&force.force[1], &force.torque[0], &force.point[2], &force.duration}) {
-    const double kept = std::exchange(*field, nan);
-    EXPECT_FALSE(all_finite(force));
+  const std::pair<double*, const char*> in_force[] = {{&force.force[1], "force"},
+                                                      {&force.torque[0], "torque"},
+                                                      {&force.point[2], "point"},
+                                                      {&force.duration, "duration"}};
+  for (const auto& [field, name] : in_force) {
+    const double kept = std::exchange(*field, std::numeric_limits<double>::quiet_NaN());
+    EXPECT_STREQ(find_not_finite(force), name);
     *field = kept;
   }
   control_t spawn = make_spawn();
-  for (double* field :
-       {&spawn.size[0], &spawn.mass, &spawn.position[1], &spawn.orientation[3], &spawn.velocity[2],
-        &spawn.angular_velocity[0], &spawn.friction, &spawn.restitution}) {
+  const std::pair<double*, const char*> in_spawn[] = {
+      {&spawn.size[0], "size"},         {&spawn.mass, "mass"},
+      {&spawn.position[1], "position"}, {&spawn.orientation[3], "orientation"},
+      {&spawn.velocity[2], "velocity"}, {&spawn.angular_velocity[0], "angular_velocity"},
+      {&spawn.friction, "friction"},    {&spawn.restitution, "restitution"}};
+  for (const auto& [field, name] : in_spawn) {
     const double kept = std::exchange(*field, -std::numeric_limits<double>::infinity());
-    EXPECT_FALSE(all_finite(spawn));
+    EXPECT_STREQ(find_not_finite(spawn), name);
     *field = kept;
   }
   spawn.color[3] = std::numeric_limits<float>::infinity();
-  EXPECT_FALSE(all_finite(spawn));
+  EXPECT_STREQ(find_not_finite(spawn), "color");
 }
 
 }  // namespace

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "from_message.h"
-#include "protocol/codec.h"
+#include "net/command_check.h"
 #include "protocol/columns.h"
 #include "world/query.h"
 
@@ -122,9 +122,8 @@ hits_t answer_query(const World& world, const query_t& query, std::size_t payloa
   hits_t answer = make_answer(query);
   answer.step = static_cast<std::int64_t>(world.step_count());
   answer.time = world.time();
-  if (const char* field = find_not_finite(query))
-    return refuse_query(query, Status::not_finite,
-                        std::string(field) + ": " + status_text(Status::not_finite));
+  if (Outcome checked = check_values(query); checked.status != Status::applied)
+    return refuse_query(query, checked.status, std::move(checked.detail));
   try {
     const std::vector<Hit> hits = find_hits(world, query);
     const std::size_t room = rows_that_fit(payload_limit, kBytesPerHit, answer);

@@ -80,6 +80,11 @@ Outcome check_values(const force_command_t& c) {
       .outcome();
 }
 
+Outcome check_values(const query_t& query) {
+  const char* field = find_not_finite(query);
+  return field ? refuse_not_finite(field) : Outcome{};
+}
+
 Outcome check_values(const control_t& c) {
   if (c.verb < control_t::VERB_SPAWN || c.verb > control_t::VERB_PUSHES_OFF) {
     return {.status = Status::unknown_verb, .detail = fmt::format("verb: {} is not known", c.verb)};

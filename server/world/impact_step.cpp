@@ -167,7 +167,7 @@ void World::advance_impacts(const StepContext& step) {
 }
 
 void World::hold_struck_joints(const StepContext& step) {
-  if (ties_.empty() || options_.joint_passes < 2 || !solves_exactly(options_.solver)) return;
+  if (ties_.empty() || !may_refine_joints()) return;
   for (std::size_t island = 0; island < scratch_.islands.count(); ++island) {
     if (meets_flying(island)) project_joints(island, step);
   }

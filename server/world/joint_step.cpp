@@ -19,9 +19,9 @@ constexpr double kStays = 1e-11;
 
 bool World::refines_joints() const {
   const std::vector<ScalarRow>& rows = scratch_.problem.rows;
-  return options_.joint_passes > 1 && solves_exactly(options_.solver) &&
-         std::any_of(rows.begin(), rows.end(),
-                     [](const ScalarRow& row) { return row.is_two_sided() && !row.is_soft(); });
+  return may_refine_joints() && std::any_of(rows.begin(), rows.end(), [](const ScalarRow& row) {
+           return row.is_two_sided() && !row.is_soft();
+         });
 }
 
 /// Moments of inertia and arms as the solved velocities have them in the middle, velocities as they were, held so that their

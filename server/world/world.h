@@ -295,9 +295,9 @@ class World {
   /// At the start of a part: apart, by more than forces and turning close within a step, or on the way to meet.
   bool is_open(const PointContact& contact, const StepContext& part) const;
   void leave_out_open_contacts(const StepContext& part);
-  /// Builds the island's problem for a part of the step, where it is now, and solves it sharply.
-  /// The problem with impulses of so long a part to start from.
+  /// The island's problem where it is now, with impulses of so long a part to start from.
   void build_part(std::size_t island, const StepContext& part);
+  /// Builds it and solves it sharply.
   void solve_part(std::size_t island, const StepContext& part);
   /// Moves the solved island smoothly through the rest of the step, or up to where a slide ends or it has turned far, and
   /// solves for what is then left.
@@ -317,6 +317,8 @@ class World {
   /// rounding, and what their arms turned since they were solved.
   void hold_touches(std::size_t island, const std::vector<Touch>& touches, const StepContext& part);
   // joint_step.cpp: joints by their arms in the middle of the step.
+  bool may_refine_joints() const { return options_.joint_passes > 1 && solves_exactly(options_.solver); }
+  /// And the problem has some.
   bool refines_joints() const;
   bool update_joint_arms(const StepContext& step, std::vector<SolverBody>& free);
   double turn_inertia(std::uint32_t problem_body, double h, SolverBody& free);
@@ -378,6 +380,7 @@ class World {
   /// Of b relative to a, by forces [m/s^2].
   Vec3 relative_acceleration(const Contact& contact) const;
   void begin_impacts();
+  /// A body of it has a contact that may strike in this step, or was struck.
   bool meets_flying(std::size_t island) const;
   void advance_undisturbed(std::size_t island, const StepContext& step);
   void hold_struck_joints(const StepContext& step);

@@ -36,7 +36,10 @@ Ladder::Ladder(ContactProblem& problem, const SolverSettings& settings)
   for (const SolverBody& body : problem.bodies) {
     if (body.inv_mass == 0.0) continue;
     ++movable_;
-    mass_ += 1.0 / body.inv_mass;
+    const double mass = 1.0 / body.inv_mass;
+    mass_ += mass;
+    lightest_ = std::min(lightest_, mass);
+    heaviest_ = std::max(heaviest_, mass);
     speed_ = std::max(speed_, std::sqrt(body.v.squaredNorm()));
   }
   for (const PointContact& c : problem.contacts) {

@@ -25,6 +25,8 @@ class Ladder {
   bool is_small() const;
   /// Fastest velocity of a body at the start of the step [m/s or rad/s].
   double start_speed() const;
+  /// Of the heaviest movable body to the lightest.
+  double mass_ratio() const { return heaviest_ / lightest_; }
   /// A factorization takes at most `limit` products of blocks. Asked before the first rung that factorizes.
   bool fits(std::uint64_t limit);
   /// Of one factorization, in products of blocks. After `fits`.
@@ -51,9 +53,10 @@ class Ladder {
 
   ContactProblem& problem_;
   const SolverSettings& settings_;
-  double rounding_ = 0.0, wanted_ = 0.0;  // [m/s]
-  double mass_ = 0.0;                     // [kg] of the movable bodies
-  double speed_ = 0.0;                    // [m/s] fastest approach at a contact, or body
+  double rounding_ = 0.0, wanted_ = 0.0;          // [m/s]
+  double mass_ = 0.0;                             // [kg] of the movable bodies
+  double lightest_ = kInfinity, heaviest_ = 0.0;  // [kg]
+  double speed_ = 0.0;                            // [m/s] fastest approach at a contact, or body
   int movable_ = 0;
   BestImpulses best_;
   SolverReport report_;

@@ -1,6 +1,8 @@
 // The exact solver where its cost is bounded, sub-steps where it would not be. The choice is made from the work that a
 // factorization of the island takes and from its speed, never from a clock, so it is the same on every machine. Both
 // solvers store the impulses of whole steps, so an island may change between them and keep its warm start.
+#include <algorithm>
+
 #include "dynamics/ladder.h"
 
 namespace tumble {
@@ -8,6 +10,8 @@ namespace {
 
 /// Factorizations that an island takes which is not near its solution: 7 (a wall) to 40 (a heap).
 constexpr double kExpected = 10.0;
+/// As many times more work are heavy loads worth: a wall of 45 cubes under 200 times their mass.
+constexpr double kMostForLoads = 6.0;
 
 }  // namespace
 
@@ -15,7 +19,8 @@ SolverReport solve_automatic(ContactProblem& problem, const SolverSettings& sett
   Ladder ladder(problem, settings);
   if (!ladder.solved()) {
     const bool calm = ladder.start_speed() < settings.exact_calm_speed;
-    const double limit = settings.exact_work * (calm ? settings.exact_calm_factor : 1.0);
+    const double times = calm ? settings.exact_calm_factor : std::min(ladder.mass_ratio(), kMostForLoads);
+    const double limit = settings.exact_work * times;
     if (!ladder.fits(static_cast<std::uint64_t>(limit)) || kExpected * ladder.work() > settings.work_left) {
       ladder.leave();
       return solve_soft_step(problem, settings);

@@ -46,6 +46,10 @@ class SlipBracket {
 
   void add(double h, double slip) {
     const bool after = slip < 0.0;
+    if (!after) {
+      earlier_ = low_;
+      slip_earlier_ = slip_low_;
+    }
     (after ? high_ : low_) = h;
     (after ? slip_high_ : slip_low_) = slip;
     (after ? weight_high_ : weight_low_) = 1.0;
@@ -62,8 +66,8 @@ class SlipBracket {
     if (slip_high_ > -start_ * kSaturated) {
       const double before = weight_low_ * slip_low_, after = weight_high_ * slip_high_;
       h = low_ + (high_ - low_) * before / (before - after);
-    } else if (low_ > 0.0) {  // it sticks already, which says nothing of when
-      h = low_ * start_ / (start_ - slip_low_);
+    } else if (low_ > 0.0) {  // it sticks already, which says nothing of when: as it slowed down before
+      h = low_ + (low_ - earlier_) * slip_low_ / (slip_earlier_ - slip_low_);
     } else {
       h = 0.25 * high_;
     }
@@ -74,6 +78,7 @@ class SlipBracket {
   double whole_, start_;
   double low_ = 0.0, high_;
   double slip_low_ = start_, slip_high_ = -start_;
+  double earlier_ = 0.0, slip_earlier_ = start_;  // than the low end
   double weight_low_ = 1.0, weight_high_ = 1.0;
   bool last_after_ = true;
 };

@@ -14,6 +14,7 @@ void set_accuracy(Options& options, Accuracy accuracy) {
       solver.max_sweeps = 8;
       solver.tolerance = 1e-6;
       solver.exact_work = 300.0;
+      solver.exact_calm_factor = 30.0;
       solver.longest_sub_step = 1.0;
       options.landing_bodies = options.midpoint_bodies = 0;
       break;
@@ -21,6 +22,7 @@ void set_accuracy(Options& options, Accuracy accuracy) {
       solver.max_sweeps = SolverSettings{}.max_sweeps;
       solver.tolerance = SolverSettings{}.tolerance;
       solver.exact_work = SolverSettings{}.exact_work;
+      solver.exact_calm_factor = SolverSettings{}.exact_calm_factor;
       solver.longest_sub_step = SolverSettings{}.longest_sub_step;
       options.landing_bodies = Options{}.landing_bodies;
       options.midpoint_bodies = Options{}.midpoint_bodies;
@@ -30,6 +32,7 @@ void set_accuracy(Options& options, Accuracy accuracy) {
       solver.max_sweeps = 1000;
       solver.tolerance = 1e-10;
       solver.exact_work = 1e6;
+      solver.exact_calm_factor = 30.0;
       solver.longest_sub_step = 1.0 / 3840.0;
       options.landing_bodies = Options{}.landing_bodies;
       options.midpoint_bodies = Options{}.midpoint_bodies;

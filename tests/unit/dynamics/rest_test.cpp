@@ -80,6 +80,23 @@ TEST(Rest, ComesAfterACalmTimeAndAnyHasteStartsItAnew) {
   EXPECT_TRUE(check_rest(island(slow), 1.0, kRestSettings, calm_for));  // 32/64 s = calm_time
 }
 
+TEST(Rest, WhatIsFasterThanItsSolverErrsIsNotCalmedAway) {
+  double calm_for = 0.0;
+  for (int i = 0; i < 100; ++i) EXPECT_FALSE(check_rest(island(2e-3), 1e-3, kRestSettings, calm_for)) << i;
+  calm_for = kRestSettings.calm_time;
+  EXPECT_TRUE(check_rest(island(2e-3), 1e-2, kRestSettings, calm_for));
+}
+
+TEST(Rest, CalmIsJudgedByTheEnergyOfASmallBodyNotByItsTurning) {
+  ContactProblem problem = island(0.0);
+  problem.bodies[1].w = problem.bodies[1].w0 = Vec3(0.0, 0.0, 1.0);
+  double calm_for = kRestSettings.calm_time;
+  EXPECT_FALSE(check_rest(problem, 1.0, kRestSettings, calm_for));  // sqrt(2) m/s
+  problem.bodies[1].inv_I_W *= 1e4;
+  calm_for = kRestSettings.calm_time;
+  EXPECT_TRUE(check_rest(problem, 1.0, kRestSettings, calm_for));  // sqrt(2) cm/s
+}
+
 TEST(Rest, SlowMotionThatIsSolvedExactlyIsNeverCalmedAway) {
   double calm_for = 100.0;
   EXPECT_FALSE(check_rest(island(1e-4), 1e-9, kRestSettings, calm_for));

@@ -109,9 +109,11 @@ class Search {
 
   bool start(const Vec3& guess);
   void expand();
+  bool meets_best_only(const DifferenceHull::Face& face) const;
   bool explains(const DifferenceHull::Face& face, const Reach& reach) const;
   bool is_furthest(const CandidateDirection& candidate) const;
-  bool converge(CandidateDirection& candidate) const;
+  enum class Descent { nowhere, under_way, arrived };
+  Descent converge(CandidateDirection& candidate) const;
   enum class Ending { nowhere, same_optimum, better_optimum };
   Ending polish(CandidateDirection candidate);
   bool is_minimum(const CandidateDirection& c) const;
@@ -249,20 +251,20 @@ bool Search::is_furthest(const CandidateDirection& candidate) const {
   return candidate.holds({a_.furthest(candidate.n).piece, b_.furthest(-candidate.n).piece});
 }
 
-/// Newton's method on the candidate's pieces; false if it leads nowhere. On a ridge it stops where a leap has come to
-/// other pieces: their corner may be the optimum, and the ridge's own lie far behind it.
-bool Search::converge(CandidateDirection& candidate) const {
+/// Newton's method on the candidate's pieces. On a ridge it stops where a leap has come to other pieces: their corner may be
+/// the optimum, and the ridge's own lie far behind it.
+Search::Descent Search::converge(CandidateDirection& candidate) const {
   for (int i = 0; i < kNewtonSteps; ++i) {
     const Vec3 before = candidate.n;
     const bool good = candidate.count == 1   ? step_on_surface(candidate)
                       : candidate.count == 2 ? step_on_ridge(candidate)
                                              : step_to_face(candidate);
-    if (!good || !candidate.n.allFinite()) return false;
+    if (!good || !candidate.n.allFinite()) return Descent::nowhere;
     const double turned2 = (candidate.n - before).squaredNorm();
-    if (turned2 < kConverged * kConverged) return true;
-    if (candidate.count == 2 && turned2 > kLeap * kLeap && !is_furthest(candidate)) return true;
+    if (turned2 < kConverged * kConverged) return Descent::arrived;
+    if (candidate.count == 2 && turned2 > kLeap * kLeap && !is_furthest(candidate)) return Descent::under_way;
   }
-  return false;
+  return Descent::nowhere;
 }
 
 /// Takes a piece in that reaches further. Of four, the one is left out without which the ray along n passes best through
@@ -299,7 +301,9 @@ bool Search::include(CandidateDirection& c, const Reach& further) const {
 
 /// The optimum near the candidate: pieces that don't hold it are dropped, those that reach further taken in. Remembered if it is better than the best.
 Search::Ending Search::polish(CandidateDirection candidate) {
-  for (int pivot = 0; pivot < kPivots && converge(candidate); ++pivot) {
+  for (int pivot = 0; pivot < kPivots; ++pivot) {
+    const Descent descent = converge(candidate);
+    if (descent == Descent::nowhere) break;
     const CandidateDirection before = best_;
     const Reach reached = reach(candidate.n);
     const double t = candidate.n.dot(point(candidate.pieces[0], candidate.n));
@@ -307,6 +311,7 @@ Search::Ending Search::polish(CandidateDirection candidate) {
       if (!include(candidate, reached)) break;
       continue;
     }
+    if (descent == Descent::under_way) continue;
     const std::array<double, 3> w = weights(candidate);
     const auto least =
         static_cast<std::size_t>(std::min_element(w.begin(), w.begin() + candidate.count) - w.begin());
@@ -346,15 +351,19 @@ void Search::grow_to_best() {
   }
 }
 
+/// Its corners are points of the pieces that meet in the best direction.
+bool Search::meets_best_only(const DifferenceHull::Face& face) const {
+  return std::all_of(face.corners.begin(), face.corners.end(),
+                     [&](std::uint16_t corner) { return best_.holds(hull_.corner(corner).pieces); });
+}
+
 /// True if no better direction hides behind the face, since it lies near the best one, the same pieces are furthest, and
 /// curvature leaves room for one minimum only, or for none.
 bool Search::explains(const DifferenceHull::Face& face, const Reach& reach) const {
   if (!best_.optimal || best_.count > 2 || face.outside || reach.n.dot(best_.n) < kBasin ||
       !best_.holds(reach.pieces))
     return false;
-  for (const std::uint16_t corner : face.corners) {
-    if (!best_.holds(hull_.corner(corner).pieces)) return false;
-  }
+  if (!meets_best_only(face)) return false;
   const bool one_piece = std::all_of(face.corners.begin(), face.corners.end(), [&](std::uint16_t corner) {
     return hull_.corner(corner).pieces == reach.pieces;
   });
@@ -362,8 +371,6 @@ bool Search::explains(const DifferenceHull::Face& face, const Reach& reach) cons
     const std::optional<Ridge> ridge = ridge_at(best_, reach.n);
     return ridge && ridge->second > 0.0;
   }
-  // Beside a ridge the piece falls towards it: it does at the best direction, and where it is convex it goes on to.
-  if (best_.count == 2) return true;
   const Vec3 u = perpendicular_to(reach.n), v = reach.n.cross(u);
   return curvature(reach.pieces, reach.n, u, v).is_positive(reach.h());
 }
@@ -393,7 +400,7 @@ void Search::expand() {
     const bool settled = candidate.holds(reached.pieces) && reached.h() > face->bound + tolerance;
     const bool near = candidate.n.dot(best_.n) > kBasin;
     const Ending ending = settled ? polish(candidate) : Ending::nowhere;
-    if (ending == Ending::same_optimum && near && !face->outside) {
+    if (ending == Ending::same_optimum && near && !face->outside && meets_best_only(*face)) {
       face->closed = true;
       continue;
     }

@@ -35,7 +35,8 @@ void integrate_taylor8(const MassProperties& mass, const VelocityPath& path, dou
 void integrate_dmv8(const MassProperties& mass, const VelocityPath& path, double h, Motion& body);
 void integrate_closed_form(const MassProperties& mass, const VelocityPath& path, double h, Motion& body);
 /// What closed_form does with a body in contact, whose momentum changes at every step: dmv8 while it turns with constant
-/// momentum, which keeps energy and momentum to rounding at a third of the cost of a closed form made anew.
+/// momentum, which keeps energy and momentum to rounding at a third of the cost of a closed form made anew; the closed form
+/// for far turns and for moments that differ by more than 1e4.
 void integrate_in_contact(const MassProperties& mass, const VelocityPath& path, double h, Motion& body);
 
 /// Moves a body that follows its given velocities, whatever acts on it (kinematic): x += h v, q <- exp(h w) q.

@@ -82,6 +82,28 @@ void World::note_way(std::uint32_t slot, const StepContext& step) {
   }
 }
 
+/// What strikes elsewhere is not to change a bit of it: the island is moved as in any step, and the way there is drawn
+/// What strikes elsewhere is not to change a bit of it: the island is moved as in any step, and the way there is drawn
+/// between, for somebody may still be thrown into it.
+void World::advance_undisturbed(std::size_t island, const StepContext& step) {
+  draw_way(island, step, &World::advance_connected);
+}
+
+void World::draw_way(std::size_t island, const StepContext& step, AdvanceIsland advance) {
+  const Islands& islands = scratch_.islands;
+  const std::uint32_t begin = islands.body_begin[island], end = islands.body_begin[island + 1];
+  std::vector<Motion>& starts = scratch_.way_starts;
+  starts.clear();
+  for (std::uint32_t i = begin; i < end; ++i) starts.push_back(motions_[islands.bodies[i]]);
+  StepContext whole = step;
+  whole.ways_only = false;
+  (this->*advance)(island, whole);
+  for (std::uint32_t i = begin; i < end; ++i) {
+    const std::uint32_t slot = islands.bodies[i];
+    if (awake(slot)) note_end(slot, starts[i - begin], step);
+  }
+}
+
 void World::note_end(std::uint32_t slot, const Motion& start, const StepContext& step) {
   const Motion end = motions_[slot];
   motions_[slot] = start;

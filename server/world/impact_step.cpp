@@ -115,23 +115,6 @@ bool World::meets_flying(std::size_t island) const {
   return std::any_of(begin, end, [this](std::uint32_t slot) { return scratch_.meets_flying[slot] != 0; });
 }
 
-/// What strikes elsewhere is not to change a bit of it: the island is moved as in any step, and the way there is drawn
-/// between, for somebody may still be thrown into it.
-void World::advance_undisturbed(std::size_t island, const StepContext& step) {
-  const Islands& islands = scratch_.islands;
-  const std::uint32_t begin = islands.body_begin[island], end = islands.body_begin[island + 1];
-  std::vector<Motion>& starts = scratch_.way_starts;
-  starts.clear();
-  for (std::uint32_t i = begin; i < end; ++i) starts.push_back(motions_[islands.bodies[i]]);
-  StepContext whole = step;
-  whole.ways_only = false;
-  advance_connected(island, whole);
-  for (std::uint32_t i = begin; i < end; ++i) {
-    const std::uint32_t slot = islands.bodies[i];
-    if (awake(slot)) note_end(slot, starts[i - begin], step);
-  }
-}
-
 const Trajectory& World::way(std::uint32_t slot) {
   if (!scratch_.events.has_trajectory(slot)) {
     if (flight_state_[slot] == FlightState::none) {

@@ -60,7 +60,9 @@ void World::advance_connected(std::size_t island, const StepContext& step) {
   if (may_be_cut(step, options_.midpoint_bodies) && island_speed(problem) > kMoving)
     rest.solver_settings.tolerance = std::min(step.solver_settings.tolerance, kSharp);
   solve_problem(rest);
-  if (is_taut(rest)) return advance_taut(island, step);
+  if (is_taut()) {
+    return step.ways_only ? draw_way(island, step, &World::advance_taut) : advance_taut(island, step);
+  }
   int cuts = 0;
   while (!try_rest(scratch_.residual)) {
     const bool may_cut = cuts < options_.max_cuts;

@@ -27,6 +27,8 @@ constexpr double kBalanced = 1e-11;
 constexpr int kMostPasses = 5;
 /// Of a step, however fast a body turns.
 constexpr double kMostParts = 32.0;
+/// [rad] what turns farther in a part is not smooth.
+constexpr double kRoughTurn = 0.5;
 /// [m/s] slower ones have stopped.
 constexpr double kStill = 1e-9;
 /// Of the speed before: sent back by as much, a point sticks all the way.
@@ -122,14 +124,19 @@ bool World::may_turn(const Touch& touch, const StepContext& part) const {
   return false;
 }
 
-/// Parts of the step in which no body turns further than it may.
-double World::length_of_part(const StepContext& rest) const {
-  double fastest = 0.0;
+/// Of the bodies of the solved problem, at either end [rad/s].
+double World::fastest_turning() const {
+  double square = 0.0;
   for (std::uint32_t i = 0; i < scratch_.problem_movable; ++i) {
     const SolverBody& body = scratch_.problem.bodies[i];
-    fastest = std::max({fastest, body.w0.squaredNorm(), body.w.squaredNorm()});
+    square = std::max({square, body.w0.squaredNorm(), body.w.squaredNorm()});
   }
-  const double parts = std::ceil(std::sqrt(fastest) * rest.h / options_.midpoint_turn);
+  return std::sqrt(square);
+}
+
+/// Parts of the step in which no body turns further than it may.
+double World::length_of_part(const StepContext& rest) const {
+  const double parts = std::ceil(fastest_turning() * rest.h / options_.midpoint_turn);
   return rest.h / std::clamp(parts, 1.0, kMostParts);
 }
 
@@ -149,6 +156,7 @@ Advance World::advance_midpoint(std::size_t island, StepContext& rest, bool may_
   way.h = rest.h;
   StepContext part = rest;
   if (may_cut) part.h = length_of_part(rest);
+  if (part.h * fastest_turning() > kRoughTurn) return Advance::none;
   bool solved = try_midpoint(island, part, way);
   if (solved && way.ends_slide) solved = may_cut && shorten_to_end_of_slide(island, part, way);
   if (!solved) {

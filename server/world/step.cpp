@@ -272,9 +272,10 @@ double World::pair_margin(Contact& contact, const StepContext& step, std::uint64
   const Motion A = motion_at(contact.body_a, now), B = motion_at(contact.body_b, now);
   // What could close within the step must be seen before it does.
   double way = step.h * Vec3(A.v - B.v).norm();
-  contact.fast = step.impact_events && way > std::min(a.radius, b.radius);
-  if (step.impact_events && (contact.fast || contact.restitution > 0.0)) {
-    way += step.h * (turning_speed(a, A) + turning_speed(b, B));
+  if (step.impact_events) {
+    const double turning = step.h * (turning_speed(a, A) + turning_speed(b, B));
+    contact.fast = way + turning > std::min(a.radius, b.radius);
+    if (contact.fast || contact.restitution > 0.0) way += turning;
   }
   const double margin = std::min(a.contact_margin, b.contact_margin);
   if (contact.flies && step.impact_events && contact.restitution > 0.0 && keeps_its_way(contact.body_a) &&

@@ -43,9 +43,9 @@ double World::swing_phase() {
   return std::sqrt(phase_square);
 }
 
-bool World::is_taut(const StepContext& step) {
-  return options_.taut_parts > 1 && solves_exactly(options_.solver) && !step.ways_only &&
-         !scratch_.problem.rows.empty() && swing_phase() > kPhase;
+bool World::is_taut() {
+  return options_.taut_parts > 1 && solves_exactly(options_.solver) && !scratch_.problem.rows.empty() &&
+         swing_phase() > kPhase;
 }
 
 /// The problem of a part of the step that begins where the parts before it ended; `opened` says by how much the gaps

@@ -231,6 +231,10 @@ class World {
   void note_way(std::uint32_t slot, const StepContext& step);
   /// The same, of a body that was moved already, from `start`.
   void note_end(std::uint32_t slot, const Motion& start, const StepContext& step);
+  void advance_undisturbed(std::size_t island, const StepContext& step);
+  using AdvanceIsland = void (World::*)(std::size_t island, const StepContext& step);
+  /// Advances the island as in a step without impacts, and draws the way there between.
+  void draw_way(std::size_t island, const StepContext& step, AdvanceIsland advance);
   /// At the end of a step: lets go of a body that meets nobody for some steps. False: it has to be visited.
   bool try_lift(std::uint32_t slot, const StepContext& step);
   bool lift(std::uint32_t slot, std::uint64_t now, const StepContext& step);
@@ -330,7 +334,7 @@ class World {
   // taut_step.cpp: islands whose joints pull hard, in parts of the step.
   double swing_phase();
   /// The solved island would swing too far in one step.
-  bool is_taut(const StepContext& step);
+  bool is_taut();
   void advance_taut(std::size_t island, const StepContext& step);
   void solve_taut_part(std::size_t island, const StepContext& part);
   void note_opening();
@@ -357,6 +361,7 @@ class World {
   bool may_step_by_midpoint(const StepContext& part) const;
   bool suits_midpoint(const StepContext& part, const std::vector<Touch>& touches) const;
   bool may_turn(const Touch& touch, const StepContext& part) const;
+  double fastest_turning() const;
   double length_of_part(const StepContext& rest) const;
   bool try_midpoint(std::size_t island, const StepContext& part, Midpoint& way);
   bool shorten_to_end_of_slide(std::size_t island, StepContext& part, Midpoint& way);
@@ -382,7 +387,6 @@ class World {
   void begin_impacts();
   /// A body of it has a contact that may strike in this step, or was struck.
   bool meets_flying(std::size_t island) const;
-  void advance_undisturbed(std::size_t island, const StepContext& step);
   void hold_struck_joints(const StepContext& step);
   /// Made when it is asked for, if the body has not been given one in this step.
   const Trajectory& way(std::uint32_t slot);

@@ -174,7 +174,7 @@ void changing_steps(Trial& trial) {
 std::vector<Case> extreme_cases() {
   return {
       {"rod", "A rod of 1:1000 at 1000 rad/s keeps energy and angular momentum", everyone(), spinning_rod},
-      {"rod_on_floor", "The same rod falls on the floor: energy never rises by 1e-6", precise(1.0 / 240.0),
+      {"rod_on_floor", "The same rod falls on the floor: energy never rises by 1e-6", precise(),
        rod_on_floor},
       {"plate", "Plates of 1e-6 m lie still, and come to lie from a fall", precise(1.0 / 240.0), thin_plate},
       {"inertia", "Moments at the limit of the triangle inequality: free spin keeps energy and momentum",

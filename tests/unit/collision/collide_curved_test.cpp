@@ -101,6 +101,31 @@ std::vector<Types> all_types() {
 }
 INSTANTIATE_TEST_SUITE_P(All, EveryCurvedPair, ::testing::ValuesIn(all_types()));
 
+/// Of two shapes whose frames differ by X_AB: what the best direction separates more than the contact's, of their size.
+double missed_separation(const Shape& a, const Shape& b, const Pose& X_AB) {
+  const double size = bounding_radius(a) + bounding_radius(b);
+  const DirectionReference reference(a, b, X_AB);
+  const Vec3 normal = query(a, {}, b, X_AB, 0.1 * size).normal_A;
+  return static_cast<double>(reference.search(1200, 6).separation - reference.separation(normal)) / size;
+}
+
+// Two ways out that are equal to 1e-5 of the size, 13 degrees apart, of which the edge of the box blocks the sight of that
+// past its corner. Found among 100 000 poses.
+TEST(Curved, LooksBehindARidgeForTheShortestWayOut) {
+  const Quat q(-0.18530324645292948, -0.26395640562224448, -0.35882319026249332, -0.87591988270322796);
+  const Pose X_AB{q, Vec3(-1.1407500311507675, 0.83629337083155464, 0.657229097543929)};
+  const Box box{Vec3(0.78640038752433439, 0.93498592058332508, 0.62981376846572401)};
+  EXPECT_LE(missed_separation(box, Cylinder{0.28704863249646462, 0.24838330055194721}, X_AB), 1e-12);  // 0
+}
+
+// Axes in parallel, 6 mm apart: all ways round are nearly as good, and every one of them touches along a line.
+TEST(Curved, FollowsARidgeToItsEnd) {
+  const Pose X_AB{Quat(0, 0, 1, 0), Vec3(0.0056311655315060376, 0, 0.024608219131368608)};
+  const Capsule capsule{0.83493657079574535, 0.56696758347794329};
+  EXPECT_LE(missed_separation(capsule, Cylinder{0.45772264425075054, 0.59834589486658152}, X_AB),
+            1e-12);  // 0
+}
+
 TEST(Curved, AMillimetreAndAKilometreAreTheSame) {
   RandomPose random(81);
   const auto scaled = [](const Shape& shape, double s) -> Shape {

@@ -77,6 +77,7 @@ int read_and_run(int argc, char** argv) {
   CLI::App app("Talk to a tumble-server over LCM.", "tumble");
   app.footer(kFooter);
   app.fallthrough();
+  app.set_version_flag("--version", "tumble " TUMBLE_VERSION);
   app.require_subcommand(1);
   add_globals(app, globals);
   for (const auto add : {add_list, add_watch, add_push, add_spawn, add_control, add_doctor, add_completion}) {

@@ -140,7 +140,8 @@ bool World::spin_until(const std::function<bool()>& done, double seconds) {
 
 void World::wait_for_server(double seconds) {
   if (!spin_until([this] { return heartbeat_.has_value(); }, seconds)) {
-    throw NoServer("no server answers on channel " + channel_name(name(), kHeartbeatSuffix) + " at " + url_);
+    const std::string where = url_.empty() ? "" : " at " + url_;  // none: the caller's own bus
+    throw NoServer("no server answers on channel " + channel_name(name(), kHeartbeatSuffix) + where);
   }
   if (heartbeat_->protocol_version != kProtocolVersion) {
     throw std::runtime_error("the server on " + heartbeat_->host + " speaks protocol version " +

@@ -269,7 +269,7 @@ TEST(Integrators, StayFiniteAtAbsurdSpeed) {
 }
 
 TEST(InContact, KeepsEnergyHoweverFarAndHoweverThinABodyTurns) {
-  for (const Vec3& I : {Vec3(1e-6, 1, 1), Vec3(1e-6, 1, 0.9), Vec3(1, 2, 3)}) {
+  for (const Vec3& I : {Vec3(1e-6, 1, 1), Vec3(1e-6, 1, 1 - 5e-7), Vec3(1, 2, 3)}) {
     for (const double turn : {0.1, 1.0, 10.0, 1000.0}) {  // [rad]
       const MassProperties mass = principal_body(I);
       Motion body;
@@ -283,14 +283,14 @@ TEST(InContact, KeepsEnergyHoweverFarAndHoweverThinABodyTurns) {
 }
 
 TEST(InContact, FollowsAThinRodAsTheClosedFormDoes) {
-  const MassProperties mass = principal_body(Vec3(1e-6, 1, 0.9));
+  const MassProperties mass = principal_body(Vec3(1e-6, 1, 1 - 5e-7));
   Motion body, exact;
   body.w = exact.w = Vec3(3.0, 12.0, 5.0);
   body.L = exact.L = mass.I.cwiseProduct(body.w);
   const VelocityPath path{Vec3::Zero(), Vec3::Zero(), body.L, body.L};
   integrate_in_contact(mass, path, 1.0 / 60, body);
   integrate_closed_form(mass, path, 1.0 / 60, exact);
-  EXPECT_LT(angle_between(body.q, exact.q), 1e-12);  // 0; by dmv8 alone 1e-5
+  EXPECT_LT(angle_between(body.q, exact.q), 1e-12);  // 0; by dmv8 alone 6e-6
 }
 
 TEST(Kinematic, FollowsItsVelocitiesExactly) {

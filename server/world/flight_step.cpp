@@ -83,7 +83,6 @@ void World::note_way(std::uint32_t slot, const StepContext& step) {
 }
 
 /// What strikes elsewhere is not to change a bit of it: the island is moved as in any step, and the way there is drawn
-/// What strikes elsewhere is not to change a bit of it: the island is moved as in any step, and the way there is drawn
 /// between, for somebody may still be thrown into it.
 void World::advance_undisturbed(std::size_t island, const StepContext& step) {
   draw_way(island, step, &World::advance_connected);

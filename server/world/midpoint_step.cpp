@@ -145,6 +145,9 @@ Advance World::advance_midpoint(std::size_t island, StepContext& rest, bool may_
   Midpoint way;
   way.touches = note_touches(rest);
   if (!suits_midpoint(rest, way.touches)) return Advance::none;
+  StepContext part = rest;
+  if (may_cut) part.h = length_of_part(rest);
+  if (part.h * fastest_turning() > kRoughTurn) return Advance::none;
   IslandState& start = scratch_.part_start;
   note_island(island, start);
   for (std::uint32_t i = 0; i < scratch_.problem_movable; ++i) {
@@ -154,9 +157,6 @@ Advance World::advance_midpoint(std::size_t island, StepContext& rest, bool may_
     way.turns.push_back(body.turn);
   }
   way.h = rest.h;
-  StepContext part = rest;
-  if (may_cut) part.h = length_of_part(rest);
-  if (part.h * fastest_turning() > kRoughTurn) return Advance::none;
   bool solved = try_midpoint(island, part, way);
   if (solved && way.ends_slide) solved = may_cut && shorten_to_end_of_slide(island, part, way);
   if (!solved) {

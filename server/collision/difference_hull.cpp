@@ -11,6 +11,9 @@ namespace {
 /// Of the shapes' size: a point this little beyond a face doesn't grow the polytope, nor does one this close to a corner:
 /// faces with edges so short have no good normals.
 constexpr double kBeyond = 1e-15, kSamePoint = 1e-8;
+/// Of the size: a face this near to the origin has it on neither side. Called outside, its nearest point would be noise, and
+/// nobody would look along its normal.
+constexpr double kThroughOrigin = 1e-14;
 
 /// Weights of the point of triangle abc that is nearest to the origin (Ericson, Real-Time Collision Detection, 5.1.5).
 std::array<double, 3> nearest_to_origin(const Vec3& a, const Vec3& b, const Vec3& c) {
@@ -46,7 +49,7 @@ void DifferenceHull::add_face(std::uint16_t i, std::uint16_t j, std::uint16_t k)
   const double length = cross.norm();
   face.normal = length > 0.0 ? Vec3(cross / length) : Vec3(Vec3::Zero());
   face.offset = face.normal.dot(a);
-  face.outside = face.offset < 0.0;
+  face.outside = face.offset < -kThroughOrigin * size_;
   face.direction = face.normal;
   face.bound = face.offset;
   if (!(length > 0.0)) face.closed = true;

@@ -257,8 +257,8 @@ void serialize(Archive& archive, BodyDefinition& definition) {
 }
 template <typename Archive>
 void serialize(Archive& archive, Geometry& geometry) {
-  auto& [body, shape, X_BS, material, radius, fat_margin, contact_margin] = geometry;
-  archive(body, shape, X_BS, material, radius, fat_margin, contact_margin);
+  auto& [body, shape, X_BS, material, radius, reach, fat_margin, contact_margin] = geometry;
+  archive(body, shape, X_BS, material, radius, reach, fat_margin, contact_margin);
 }
 template <typename Archive>
 void serialize(Archive& archive, Body& body) {
@@ -284,9 +284,17 @@ void serialize(Archive& archive, Contact& contact) {
 template <>
 struct Archived<ContactGraph> {
   static void members(auto& archive, ContactGraph& graph) {
-    auto& [contacts, incoming, late] = graph;
-    archive(contacts, late);
-    incoming.clear();  // within an insertion only
+    [[maybe_unused]] auto& [order, incoming, places, free, late] = graph;
+    auto count = static_cast<std::uint32_t>(order.size());
+    archive(count);
+    for (std::uint32_t i = 0; i < count; ++i) {
+      if (i == order.size()) graph.append({});
+      Contact& contact = places[order[i].place];
+      archive(contact);
+      order[i].pair = contact.pair;
+    }
+    archive(late);
+    if (late > order.size()) refuse_bytes();
   }
 };
 template <typename Archive>

@@ -34,14 +34,14 @@ void read_points(const World& world, const Contact& contact, std::vector<Contact
 
 std::vector<ContactForce> read_contact_forces(const World& world) {
   std::vector<ContactForce> forces;
-  for (const Contact& contact : world.contacts().all()) read_points(world, contact, forces);
+  for (const Contact& contact : world.contacts()) read_points(world, contact, forces);
   return forces;
 }
 
 std::vector<ContactForce> read_contact_forces(const World& world, BodyId body) {
   std::vector<ContactForce> forces;
   if (!world.is_valid(body)) return forces;
-  for (const Contact& contact : world.contacts().all()) {
+  for (const Contact& contact : world.contacts()) {
     if (contact.body_a == body.index || contact.body_b == body.index) read_points(world, contact, forces);
   }
   return forces;

@@ -5,45 +5,53 @@
 
 namespace tumble {
 
-const Contact* ContactGraph::find(GeometryPair pair) const {
-  const auto late = contacts_.end() - static_cast<std::ptrdiff_t>(late_);
-  const auto it = std::lower_bound(contacts_.begin(), late, pair,
-                                   [](const Contact& c, GeometryPair key) { return c.pair < key; });
-  if (it != late && it->pair == pair) return &*it;
-  const auto found = std::find_if(late, contacts_.end(), [&](const Contact& c) { return c.pair == pair; });
-  return found != contacts_.end() ? &*found : nullptr;
+bool ContactGraph::stands_in_order(GeometryPair pair) const {
+  const auto late = order_.end() - static_cast<std::ptrdiff_t>(late_);
+  const auto it = std::lower_bound(order_.begin(), late, pair,
+                                   [](const Entry& entry, GeometryPair key) { return entry.pair < key; });
+  return it != late && it->pair == pair;
 }
 
+bool ContactGraph::comes_late(GeometryPair pair) const {
+  const auto late = order_.end() - static_cast<std::ptrdiff_t>(late_);
+  return std::any_of(late, order_.end(), [&](const Entry& entry) { return entry.pair == pair; });
+}
+
+void ContactGraph::append(const Contact& contact) {
+  if (free_.empty()) {
+    free_.push_back(static_cast<std::uint32_t>(places_.size()));
+    places_.emplace_back();
+  }
+  order_.push_back({contact.pair, free_.back()});
+  places_[free_.back()] = contact;
+  free_.pop_back();
+  ++late_;
+}
+
+/// From the back, and only as far as the first that comes in.
 void ContactGraph::settle() {
   if (late_ == 0) return;
-  const auto late = contacts_.end() - static_cast<std::ptrdiff_t>(late_);
-  incoming_.assign(late, contacts_.end());
-  contacts_.erase(late, contacts_.end());
+  const auto by_pair = [](const Entry& l, const Entry& r) { return l.pair < r.pair; };
+  incoming_.assign(order_.end() - static_cast<std::ptrdiff_t>(late_), order_.end());
+  std::sort(incoming_.begin(), incoming_.end(), by_pair);
+  std::size_t old = order_.size() - late_, in = late_;
+  while (in > 0) {
+    const bool from_old = old > 0 && by_pair(incoming_[in - 1], order_[old - 1]);
+    order_[old + in - 1] = from_old ? order_[old - 1] : incoming_[in - 1];
+    --(from_old ? old : in);
+  }
   late_ = 0;
-  std::sort(incoming_.begin(), incoming_.end(),
-            [](const Contact& l, const Contact& r) { return l.pair < r.pair; });
-  merge_incoming();
 }
 
 void ContactGraph::remove(const std::vector<std::uint32_t>& indices) {
   auto gone = indices.begin();
   std::uint32_t index = 0;
-  std::erase_if(contacts_, [&](const Contact&) {
+  std::erase_if(order_, [&](const Entry& entry) {
     if (gone == indices.end() || *gone != index++) return false;
+    free_.push_back(entry.place);
     ++gone;
     return true;
   });
-}
-
-/// From the back, and only as far as the first that comes in: contacts are big.
-void ContactGraph::merge_incoming() {
-  std::size_t old = contacts_.size(), in = incoming_.size();
-  contacts_.resize(old + in);
-  while (in > 0) {
-    const bool from_old = old > 0 && incoming_[in - 1].pair < contacts_[old - 1].pair;
-    contacts_[old + in - 1] = from_old ? contacts_[old - 1] : incoming_[in - 1];
-    --(from_old ? old : in);
-  }
 }
 
 namespace {

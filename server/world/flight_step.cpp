@@ -82,12 +82,6 @@ void World::note_way(std::uint32_t slot, const StepContext& step) {
   }
 }
 
-/// What strikes elsewhere is not to change a bit of it: the island is moved as in any step, and the way there is drawn
-/// between, for somebody may still be thrown into it.
-void World::advance_undisturbed(std::size_t island, const StepContext& step) {
-  draw_way(island, step, &World::advance_connected);
-}
-
 void World::draw_way(std::size_t island, const StepContext& step, AdvanceIsland advance) {
   const Islands& islands = scratch_.islands;
   const std::uint32_t begin = islands.body_begin[island], end = islands.body_begin[island + 1];
@@ -146,7 +140,7 @@ std::optional<std::size_t> World::reach_ahead(std::uint32_t slot, std::uint64_t 
   const Aabb path = body.flight.path_bounds(static_cast<double>(now - body.takeoff) * h,
                                             static_cast<double>(until - body.takeoff) * h);
   const auto box = [&](const Geometry& geometry) {
-    return path.grown(geometry.reach() + geometry.contact_margin);
+    return path.grown(geometry.reach + geometry.contact_margin);
   };
   std::size_t company = 0;
   for (const std::uint32_t index : bodies_[slot].geometries) {
@@ -160,7 +154,7 @@ std::optional<std::size_t> World::reach_ahead(std::uint32_t slot, std::uint64_t 
     for (const std::uint32_t other : scratch_.near) {
       const GeometryPair pair{std::min(index, other), std::max(index, other)};
       if (jointed(slot, geometries_[other].body) || clear_pairs_.holds(pair)) continue;
-      if (surface_of(geometries_[other].shape) || contacts_.find(pair)) return std::nullopt;
+      if (surface_of(geometries_[other].shape) || contacts_.holds(pair)) return std::nullopt;
       Contact contact = make_contact(pair);
       if (!leave_if_clear(contact, pair_margin(contact, step, now), now)) return std::nullopt;
     }

@@ -103,7 +103,7 @@ void World::begin_impacts() {
   scratch_.contacts_indexed = false;
   scratch_.meets_flying.assign(body_capacity(), 0);
   for (const std::uint32_t index : scratch_.flying) {
-    const Contact& contact = contacts_.all()[index];
+    const Contact& contact = contacts_[index];
     scratch_.meets_flying[contact.body_a] = scratch_.meets_flying[contact.body_b] = 1;
   }
 }
@@ -128,7 +128,7 @@ const Trajectory& World::way(std::uint32_t slot) {
 
 void World::advance_impacts(const StepContext& step) {
   ImpactEvents& events = scratch_.events;
-  for (const std::uint32_t index : scratch_.flying) foresee(contacts_.all()[index], step);
+  for (const std::uint32_t index : scratch_.flying) foresee(contacts_[index], step);
   while (const ImpactEvent* next = events.next()) {
     const ImpactEvent event = *next;
     events.pop();
@@ -207,7 +207,7 @@ void World::absorb_tired(Blow& blow) {
     if (scratch_.events.count(slot) < options_.max_impacts) continue;
     blow.tired = true;
     for (const std::uint32_t index : scratch_.contacts_of[slot]) {
-      const Contact& contact = contacts_.all()[index];
+      const Contact& contact = contacts_[index];
       join(blow, contact.body_a, contact.body_b);
     }
   }
@@ -227,7 +227,7 @@ void World::move_to(const Blow& blow, double time) {
 void World::update_contacts_of(Blow& blow, const StepContext& rest) {
   for (const std::uint32_t slot : blow.members) {
     for (const std::uint32_t index : scratch_.contacts_of[slot]) {
-      const Contact& contact = contacts_.all()[index];
+      const Contact& contact = contacts_[index];
       const std::uint32_t other = contact.body_a == slot ? contact.body_b : contact.body_a;
       const bool second_visit = other < slot && blow.has(other);
       if (second_visit || (movable(other) && !blow.has(other))) continue;
@@ -245,7 +245,7 @@ void World::build_blow_problem(const Blow& blow) {
   for (const std::uint32_t slot : blow.members) problem_body(slot, 0.0);
   scratch_.problem_movable = static_cast<std::uint32_t>(problem.bodies.size());
   for (const std::uint32_t index : blow.inner) {
-    const Contact& contact = contacts_.all()[index];
+    const Contact& contact = contacts_[index];
     const bool strikes = blow.strikes(contact.pair);
     if (contact.flies && !strikes) continue;
     const std::size_t first = problem.contacts.size();
@@ -297,7 +297,7 @@ void World::resolve_blow(const Blow& blow, const StepContext& rest) {
   prepare(problem, rest.bounds);
   bool bounces = false;
   for (std::size_t i = 0; i < problem.contacts.size(); ++i) {
-    const Contact& contact = contacts_.all()[scratch_.contact_source[i].contact];
+    const Contact& contact = contacts_[scratch_.contact_source[i].contact];
     const double threshold = contact.restitution > 0.0 ? contact.threshold : 0.0;
     bounces = bounces || (blow.strikes(contact.pair) && problem.contacts[i].un0 < -threshold);
   }
@@ -318,8 +318,7 @@ void World::resolve_blow(const Blow& blow, const StepContext& rest) {
   for (std::size_t i = 0; i < problem.contacts.size(); ++i) {
     PointContact& c = problem.contacts[i];
     const std::uint32_t index = scratch_.contact_source[i].contact;
-    if (c.restitution == 0.0 || !blow.strikes(contacts_.all()[index].pair) || !ends_bouncing(index, rest))
-      continue;
+    if (c.restitution == 0.0 || !blow.strikes(contacts_[index].pair) || !ends_bouncing(index, rest)) continue;
     ended = true;
     c.restitution = 0.0;
   }
@@ -336,7 +335,7 @@ void World::resolve_blow(const Blow& blow, const StepContext& rest) {
 }
 
 bool World::ends_bouncing(std::uint32_t contact_index, const StepContext& rest) const {
-  const Contact& contact = contacts_.all()[contact_index];
+  const Contact& contact = contacts_[contact_index];
   double rebound = 0.0;
   for (std::size_t i = 0; i < scratch_.problem.contacts.size(); ++i) {
     if (scratch_.contact_source[i].contact != contact_index) continue;
@@ -364,7 +363,7 @@ void World::store_blow() {
 void World::continue_from(const Blow& blow, const StepContext& rest) {
   std::vector<std::uint32_t> held;  // contacts that go on as resting contact
   for (const std::uint32_t index : blow.inner) {
-    Contact& contact = contacts_.all()[index];
+    Contact& contact = contacts_[index];
     contact.flies = !blow.tired && flies(contact, rest.h);
     if (contact.flies) contact.impulse.fill(Vec3::Zero());
     if (!contact.flies && contact.manifold.count > 0) held.push_back(index);
@@ -372,8 +371,8 @@ void World::continue_from(const Blow& blow, const StepContext& rest) {
   const std::vector<std::uint32_t> ties = ties_of(blow);
   std::vector<std::uint32_t> bound;  // slots that a contact or tie holds
   for (const std::uint32_t index : held) {
-    bound.push_back(contacts_.all()[index].body_a);
-    bound.push_back(contacts_.all()[index].body_b);
+    bound.push_back(contacts_[index].body_a);
+    bound.push_back(contacts_[index].body_b);
   }
   for (const std::uint32_t index : ties) {
     bound.push_back(ties_[index].a);
@@ -403,7 +402,7 @@ void World::foresee(const Blow& blow, const StepContext& rest) {
   renew_boxes_within(blow, rest);
   for (const std::uint32_t slot : blow.members) {
     for (const std::uint32_t index : scratch_.contacts_of[slot]) {
-      const Contact& contact = contacts_.all()[index];
+      const Contact& contact = contacts_[index];
       const std::uint32_t other = contact.body_a == slot ? contact.body_b : contact.body_a;
       if (other < slot && blow.has(other)) continue;
       foresee(contact, rest);
@@ -438,7 +437,7 @@ void World::renew_boxes_within(const Blow& blow, const StepContext& rest) {
   if (left) find_pairs();
   recall_clear_pairs();
   if (scratch_.pairs.empty()) return;
-  const auto known = static_cast<std::uint32_t>(contacts_.all().size());
+  const auto known = static_cast<std::uint32_t>(contacts_.size());
   const std::size_t added =
       contacts_.insert_late(scratch_.pairs, [this](GeometryPair pair) { return make_contact(pair); });
   if (added == 0) return;
@@ -472,8 +471,8 @@ void World::index_contacts() {
 }
 
 void World::index_contacts_from(std::uint32_t first) {
-  for (std::uint32_t index = first; index < contacts_.all().size(); ++index) {
-    const Contact& contact = contacts_.all()[index];
+  for (std::uint32_t index = first; index < contacts_.size(); ++index) {
+    const Contact& contact = contacts_[index];
     scratch_.contacts_of[contact.body_a].push_back(index);
     scratch_.contacts_of[contact.body_b].push_back(index);
   }

@@ -138,7 +138,7 @@ void World::build_problem(std::size_t island, const StepContext& step) {
   }
   scratch_.problem_movable = static_cast<std::uint32_t>(scratch_.problem.bodies.size());
   for (const std::uint32_t contact : contacts_of_island(island)) add_contact_rows(contact, step.h);
-  const auto contact_count = static_cast<std::uint32_t>(contacts_.all().size());
+  const auto contact_count = static_cast<std::uint32_t>(contacts_.size());
   for (std::uint32_t i = islands.edge_begin[island]; i < islands.edge_begin[island + 1]; ++i) {
     const std::uint32_t source = scratch_.edge_source[islands.edges[i]];
     if (source >= contact_count) add_tie_rows(source - contact_count, step);
@@ -188,7 +188,7 @@ std::uint32_t World::problem_body(std::uint32_t slot, double h) {
 }
 
 void World::add_contact_rows(std::uint32_t contact_index, double h) {
-  const Contact& contact = contacts_.all()[contact_index];
+  const Contact& contact = contacts_[contact_index];
   const std::uint32_t a = problem_body(contact.body_a, h);
   const std::uint32_t b = problem_body(contact.body_b, h);
   const Motion& A = motions_[contact.body_a];
@@ -259,14 +259,13 @@ void World::store_impulses() {
     const PointContact& row = scratch_.problem.contacts[i];
     const ContactSource source = scratch_.contact_source[i];
     const Vec3 impulse = in_world(row, row.lambda) / scratch_.impulse_share;
-    contacts_.all()[source.contact].impulse[source.point] =
-        impulse.allFinite() ? impulse : Vec3(Vec3::Zero());
+    contacts_[source.contact].impulse[source.point] = impulse.allFinite() ? impulse : Vec3(Vec3::Zero());
   }
   for (const Turning& turning : scratch_.problem.turnings) {
     const ContactSource source = scratch_.contact_source[turning.contact];
     const Vec3 moment =
         in_world(scratch_.problem.contacts[turning.contact], turning.lambda) / scratch_.impulse_share;
-    contacts_.all()[source.contact].moment[source.point] = moment.allFinite() ? moment : Vec3(Vec3::Zero());
+    contacts_[source.contact].moment[source.point] = moment.allFinite() ? moment : Vec3(Vec3::Zero());
   }
   for (std::size_t i = 0; i < scratch_.problem.rows.size(); ++i) {
     const double lambda = scratch_.problem.rows[i].lambda / scratch_.impulse_share;

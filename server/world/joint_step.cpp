@@ -92,7 +92,7 @@ void World::project_joints(std::size_t island, const StepContext& part) {
 /// The joints of the island alone, as they are now.
 void World::build_joint_problem(std::size_t island, const StepContext& part) {
   const Islands& islands = scratch_.islands;
-  const auto contact_count = static_cast<std::uint32_t>(contacts_.all().size());
+  const auto contact_count = static_cast<std::uint32_t>(contacts_.size());
   StepContext instant = part;
   instant.h = 0.0;
   begin_problem(instant.h);

@@ -89,7 +89,7 @@ double World::find_landing(const ContactProblem& start, const StepContext& rest,
 double World::landing_gap(std::size_t island, const std::vector<Touch>& held) {
   double least = kInfinity;
   for (const std::uint32_t index : contacts_of_island(island)) {
-    const Manifold& manifold = contacts_.all()[index].manifold;
+    const Manifold& manifold = contacts_[index].manifold;
     for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(manifold.count); ++i) {
       if (find_touch(held, {index, i}) == nullptr) least = std::min(least, manifold.points[i].separation);
     }

@@ -109,7 +109,7 @@ bool World::suits_midpoint(const StepContext& part, const std::vector<Touch>& to
 
 /// Not so on a plane: balls, and what does not turn. Known before the contacts are looked at in the middle.
 bool World::may_turn(const Touch& touch, const StepContext& part) const {
-  const Contact& contact = contacts_.all()[touch.contact];
+  const Contact& contact = contacts_[touch.contact];
   const Geometry &a = geometries_[contact.pair.a], &b = geometries_[contact.pair.b];
   const bool plane_a = std::holds_alternative<HalfSpace>(a.shape);
   if (!plane_a && !std::holds_alternative<HalfSpace>(b.shape)) return true;
@@ -134,9 +134,9 @@ double World::fastest_turning() const {
   return std::sqrt(square);
 }
 
-/// Parts of the step in which no body turns further than it may.
-double World::length_of_part(const StepContext& rest) const {
-  const double parts = std::ceil(fastest_turning() * rest.h / options_.midpoint_turn);
+/// Parts of the step in which no body that turns so fast [rad/s] turns further than it may.
+double World::length_of_part(const StepContext& rest, double turning) const {
+  const double parts = std::ceil(turning * rest.h / options_.midpoint_turn);
   return rest.h / std::clamp(parts, 1.0, kMostParts);
 }
 
@@ -146,8 +146,9 @@ Advance World::advance_midpoint(std::size_t island, StepContext& rest, bool may_
   way.touches = note_touches(rest);
   if (!suits_midpoint(rest, way.touches)) return Advance::none;
   StepContext part = rest;
-  if (may_cut) part.h = length_of_part(rest);
-  if (part.h * fastest_turning() > kRoughTurn) return Advance::none;
+  const double turning = fastest_turning();
+  if (may_cut) part.h = length_of_part(rest, turning);
+  if (part.h * turning > kRoughTurn) return Advance::none;
   IslandState& start = scratch_.part_start;
   note_island(island, start);
   for (std::uint32_t i = 0; i < scratch_.problem_movable; ++i) {

@@ -83,7 +83,7 @@ Advance World::advance_until_cut(std::size_t island, StepContext& rest, bool may
 
 const std::vector<std::uint32_t>& World::contacts_of_island(std::size_t island) {
   const Islands& islands = scratch_.islands;
-  const std::vector<Contact>& contacts = contacts_.all();
+  const ContactGraph& contacts = contacts_;
   std::vector<std::uint32_t>& found = scratch_.island_contacts;
   found.clear();
   for (std::uint32_t i = islands.edge_begin[island]; i < islands.edge_begin[island + 1]; ++i) {
@@ -99,7 +99,7 @@ const std::vector<std::uint32_t>& World::contacts_of_island(std::size_t island) 
 
 /// Contacts are sorted by pairs, so those with the same surface stand side by side.
 void World::add_other_triangles(std::uint32_t index, std::size_t touching) {
-  const std::vector<Contact>& contacts = contacts_.all();
+  const ContactGraph& contacts = contacts_;
   std::vector<std::uint32_t>& found = scratch_.island_contacts;
   const auto is_same_pair = [&](std::uint32_t i) {
     return contacts[i].pair.a == contacts[index].pair.a && contacts[i].pair.b == contacts[index].pair.b;
@@ -125,7 +125,7 @@ void World::note_island(std::size_t island, IslandState& state) {
     state.motions.push_back(motions_[scratch_.problem_slot[i]]);
   state.contacts.clear();
   for (const std::uint32_t index : contacts_of_island(island)) {
-    const Contact& contact = contacts_.all()[index];
+    const Contact& contact = contacts_[index];
     state.contacts.push_back({contact.manifold, contact.normal_W, contact.impulse, contact.moment});
   }
   state.problem = scratch_.problem;
@@ -139,7 +139,7 @@ void World::restore_island(std::size_t island, const IslandState& state) {
     motions_[scratch_.problem_slot[i]] = state.motions[i];
   std::size_t next = 0;
   for (const std::uint32_t index : contacts_of_island(island)) {
-    Contact& contact = contacts_.all()[index];
+    Contact& contact = contacts_[index];
     const IslandState::Touching& touching = state.contacts[next++];
     contact.manifold = touching.manifold;
     contact.normal_W = touching.normal_W;
@@ -162,7 +162,7 @@ std::vector<Touch> World::note_touches(const StepContext& part) const {
     const double friction = std::sqrt(c.lambda.y() * c.lambda.y() + c.lambda.z() * c.lambda.z());
     touches.push_back(
         {.contact = source.contact,
-         .feature = contacts_.all()[source.contact].manifold.points[source.point].feature,
+         .feature = contacts_[source.contact].manifold.points[source.point].feature,
          .gap = c.separation,
          .n = c.n,
          .rA = c.rA,
@@ -176,9 +176,9 @@ std::vector<Touch> World::note_touches(const StepContext& part) const {
 }
 
 const Touch* World::find_touch(const std::vector<Touch>& touches, ContactSource source) const {
-  const auto pair = [this](std::uint32_t contact) { return contacts_.all()[contact].pair; };
+  const auto pair = [this](std::uint32_t contact) { return contacts_[contact].pair; };
   const GeometryPair meant = pair(source.contact);
-  const std::uint32_t feature = contacts_.all()[source.contact].manifold.points[source.point].feature;
+  const std::uint32_t feature = contacts_[source.contact].manifold.points[source.point].feature;
   const Touch* found = nullptr;
   for (const Touch& touch : touches) {
     if (touch.feature != feature) continue;

@@ -31,7 +31,7 @@ SmoothBody World::smooth_body(std::uint32_t slot) const {
 
 bool World::has_springs_only(std::size_t island) const {
   const Islands& islands = scratch_.islands;
-  const auto contact_count = static_cast<std::uint32_t>(contacts_.all().size());
+  const auto contact_count = static_cast<std::uint32_t>(contacts_.size());
   const auto is_spring = [&](std::uint32_t edge) {
     const std::uint32_t source = scratch_.edge_source[edge];
     return source >= contact_count && std::holds_alternative<Spring>(ties_[source - contact_count].law);
@@ -59,7 +59,7 @@ bool World::advance_springs(std::size_t island, const StepContext& step) {
     index_of(islands.bodies[i]);
   }
   for (std::uint32_t i = islands.edge_begin[island]; i < islands.edge_begin[island + 1]; ++i) {
-    const Tie& tie = ties_[scratch_.edge_source[islands.edges[i]] - contacts_.all().size()];
+    const Tie& tie = ties_[scratch_.edge_source[islands.edges[i]] - contacts_.size()];
     system.springs.push_back({.a = index_of(tie.a),
                               .b = index_of(tie.b),
                               .pA = tie.pA,

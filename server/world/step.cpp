@@ -11,7 +11,7 @@ namespace {
 
 /// Neighbouring triangles of a surface name a point on their common edge or corner alike. It counts once for each normal
 /// (equal up to 1e-6 rad), for the first triangle in order.
-void drop_repeated_points(std::vector<Contact>& contacts, std::uint32_t index) {
+void drop_repeated_points(ContactGraph& contacts, std::uint32_t index) {
   Contact& contact = contacts[index];
   Manifold& manifold = contact.manifold;
   for (std::uint32_t i = index; i-- > 0 && manifold.count > 0;) {
@@ -27,8 +27,8 @@ void drop_repeated_points(std::vector<Contact>& contacts, std::uint32_t index) {
   }
 }
 
-/// [B] of a contact that a visit reads: its pair; its manifold; all of it.
-constexpr std::size_t kKey = 64, kHead = 256, kWhole = sizeof(Contact);
+/// [B] of a contact that a visit reads: its manifold; all of it.
+constexpr std::size_t kHead = 256, kWhole = sizeof(Contact);
 
 /// [steps] A pair is left to its ways for no less, which would cost more than to look at it, and for no more, so that it is
 /// soon forgotten once its boxes have come apart.
@@ -37,7 +37,7 @@ constexpr double kShortestClear = 4.0, kLongestClear = 64.0;
 /// Of the geometry's furthest point about the centre of mass [m/s].
 double turning_speed(const Geometry& geometry, const Motion& motion) {
   // What does not turn may be infinite.
-  return motion.w.isZero(0.0) ? 0.0 : motion.w.norm() * geometry.reach();
+  return motion.w.isZero(0.0) ? 0.0 : motion.w.norm() * geometry.reach;
 }
 
 }  // namespace
@@ -143,7 +143,7 @@ Pose World::geometry_pose(const Geometry& geometry) const {
 Aabb World::contact_bounds(const Geometry& geometry, double h) const {
   const Aabb bounds = compute_aabb(geometry.shape, geometry_pose(geometry));
   if (bodies_[geometry.body].type == BodyType::fixed) return bounds;
-  const double arm = geometry.reach();
+  const double arm = geometry.reach;
   const double turn = std::min(motions_[geometry.body].w.norm() * h * arm, 2.0 * arm);
   return bounds.grown(geometry.contact_margin + turn);
 }
@@ -172,9 +172,9 @@ void World::update_pairs(const StepContext& step) {
   find_pairs();
   recall_clear_pairs();
   scratch_.lost.clear();
-  contacts_.visit<kKey>(active_contacts_, [this](std::uint32_t index) {
-    if (is_lost(contacts_.all()[index].pair)) scratch_.lost.push_back(index);
-  });
+  for (const std::uint32_t index : active_contacts_) {
+    if (is_lost(contacts_.pair(index))) scratch_.lost.push_back(index);
+  }
   if (!scratch_.lost.empty()) {
     contacts_.remove(scratch_.lost);
     active_stale_ = true;
@@ -201,7 +201,7 @@ void World::leave_clear_pairs(const StepContext& step) {
   if (!options_.skip_flying) return;
   std::erase_if(scratch_.pairs, [&](GeometryPair pair) {
     if (!keeps_its_way(geometries_[pair.a].body) || !keeps_its_way(geometries_[pair.b].body)) return false;
-    if (contacts_.find(pair)) return false;
+    if (contacts_.holds(pair)) return false;
     Contact contact = make_contact(pair);
     return leave_if_clear(contact, pair_margin(contact, step, step_count_), step_count_);
   });
@@ -291,7 +291,7 @@ void World::update_contacts(const StepContext& step) {
   scratch_.lost.clear();
   contacts_.visit<kWhole>(active_contacts_, [&](std::uint32_t index) {
     const double margin = update_contact(index, step);
-    const Contact& contact = contacts_.all()[index];
+    const Contact& contact = contacts_[index];
     if (options_.skip_flying && contact.manifold.count == 0 && leave_if_clear(contact, margin, step_count_))
       scratch_.lost.push_back(index);
   });
@@ -326,10 +326,10 @@ bool World::leave_if_clear(const Contact& contact, double margin, std::uint64_t 
     const Pose X_WS = geometry_pose(plane);
     const Vec3 n = rotation_matrix(X_WS.q).col(2);
     const double sign = plane_a ? 1.0 : -1.0,
-                 gap = n.dot((plane_a ? B : A).x - X_WS.p) - other.reach() - margin;
+                 gap = n.dot((plane_a ? B : A).x - X_WS.p) - other.reach - margin;
     time = time_above(gap, sign * n.dot(B.v - A.v), sign * n.dot(g));
   } else {
-    time = time_apart(B.x - A.x, B.v - A.v, g, a.reach() + b.reach() + margin);
+    time = time_apart(B.x - A.x, B.v - A.v, g, a.reach + b.reach + margin);
   }
   const double steps = time / options_.time_step;
   if (steps < kShortestClear) return false;
@@ -344,7 +344,7 @@ bool World::leave_if_clear(const Contact& contact, double margin, std::uint64_t 
 }
 
 double World::update_contact(std::uint32_t index, const StepContext& step) {
-  Contact& contact = contacts_.all()[index];
+  Contact& contact = contacts_[index];
   const Geometry& a = geometries_[contact.pair.a];
   const Geometry& b = geometries_[contact.pair.b];
   const Manifold old_manifold = contact.manifold;
@@ -353,7 +353,7 @@ double World::update_contact(std::uint32_t index, const StepContext& step) {
   update_manifold(a.shape, X_WA, b.shape, geometry_pose(b), margin, options_.narrow_phase, contact.cache,
                   counters_.narrow_phase, contact.manifold, contact.pair.part);
   contact.normal_W = X_WA.q * contact.manifold.normal_A;
-  if (contact.pair.part > 0) drop_repeated_points(contacts_.all(), index);
+  if (contact.pair.part > 0) drop_repeated_points(contacts_, index);
   if (contact.manifold.count == 0) return margin;
   transport_impulses(old_manifold, contact.manifold, contact.normal_W, a.contact_margin, contact.impulse);
   wake_slot(contact.body_a);
@@ -364,7 +364,7 @@ double World::update_contact(std::uint32_t index, const StepContext& step) {
 void World::refresh_active() {
   if (!active_stale_) return;
   std::fill(paired_.begin(), paired_.end(), std::uint8_t{0});
-  for (const Contact& contact : contacts_.all()) {
+  for (const Contact& contact : contacts_) {
     for (const std::uint32_t slot : {contact.body_a, contact.body_b}) {
       paired_[slot] = 1;
       descend(slot, step_count_);
@@ -381,8 +381,8 @@ void World::refresh_active() {
   active_contacts_.clear();
   resting_points_ = 0;
   resting_penetration_ = 0.0;
-  for (std::uint32_t index = 0; index < contacts_.all().size(); ++index) {
-    const Contact& contact = contacts_.all()[index];
+  for (std::uint32_t index = 0; index < contacts_.size(); ++index) {
+    const Contact& contact = contacts_[index];
     if (takes_part(contact.body_a) || takes_part(contact.body_b)) {
       active_contacts_.push_back(index);
       continue;
@@ -406,7 +406,7 @@ void World::build_islands(const StepContext& step) {
     return slot != kWorld && movable(slot) ? slot : IslandEdge::kImmovable;
   };
   contacts_.visit<kHead>(active_contacts_, [&](std::uint32_t index) {
-    Contact& contact = contacts_.all()[index];
+    Contact& contact = contacts_[index];
     const bool may_strike = contact.manifold.count == 0 || contact.restitution > 0.0 || contact.fast;
     contact.flies = step.impact_events && may_strike && flies(contact, step.h);
     if (contact.manifold.count == 0) return;
@@ -424,7 +424,7 @@ void World::build_islands(const StepContext& step) {
     const bool b = edge.b != IslandEdge::kImmovable && awake(edge.b);
     if (!a && !b) continue;
     scratch_.edges.push_back(edge);
-    scratch_.edge_source.push_back(static_cast<std::uint32_t>(contacts_.all().size()) + index);
+    scratch_.edge_source.push_back(static_cast<std::uint32_t>(contacts_.size()) + index);
   }
   scratch_.builder.build(body_capacity(), awake_, scratch_.edges, scratch_.islands);
 }
@@ -440,7 +440,8 @@ void World::advance_islands(const StepContext& whole_step) {
     if (islands.edge_begin[island] == islands.edge_begin[island + 1]) {
       advance_free(islands.bodies[islands.body_begin[island]], step);
     } else if (step.ways_only && !meets_flying(island)) {
-      advance_undisturbed(island, step);
+      // What strikes elsewhere is not to change a bit of it, but somebody may still be thrown into it.
+      draw_way(island, step, &World::advance_connected);
     } else {
       advance_connected(island, step);
     }
@@ -457,14 +458,14 @@ void World::update_report() {
   report_ = StepReport{};
   report_.bodies_awake = static_cast<std::uint32_t>(awake_.size()) + aloft_count_;
   report_.bodies_resting = dynamic_count_ - report_.bodies_awake;
-  report_.pairs = static_cast<std::uint32_t>(contacts_.all().size() + clear_pairs_.size());
+  report_.pairs = static_cast<std::uint32_t>(contacts_.size() + clear_pairs_.size());
   report_.islands = static_cast<std::uint32_t>(scratch_.islands.count()) + aloft_count_;
   report_.contacts = resting_points_;
   report_.deepest_penetration = resting_penetration_;
   report_.max_residual = step_residual_;
   report_.push_work = step_push_work_;
   contacts_.visit<kHead>(active_contacts_, [this](std::uint32_t index) {
-    const Manifold& manifold = contacts_.all()[index].manifold;
+    const Manifold& manifold = contacts_[index].manifold;
     report_.contacts += static_cast<std::uint32_t>(manifold.count);
     report_.deepest_penetration = std::max(report_.deepest_penetration, deepest(manifold));
   });

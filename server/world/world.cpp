@@ -172,6 +172,7 @@ std::uint32_t World::add_geometry(std::uint32_t slot, const GeometryDefinition& 
   geometry.X_BS = {normalized(definition.X_LS.q), definition.X_LS.p - bodies_[slot].p_LB};
   geometry.material = definition.material;
   geometry.radius = bounding_radius(definition.shape);
+  geometry.reach = geometry.X_BS.p.norm() + geometry.radius;
   // Slack in proportion to small things, so that gravel does not pair with everything in a hand's breadth.
   geometry.fat_margin = std::min(options_.fat_margin, 0.2 * geometry.radius);
   geometry.contact_margin = std::min(options_.contact_margin, 0.2 * geometry.radius);
@@ -196,7 +197,7 @@ void World::renew_boxes(std::uint32_t slot) {
 bool World::destroy_body(BodyId id) {
   if (!is_valid(id)) return false;
   const std::uint32_t slot = id.index;
-  for (const Contact& contact : contacts_.all()) {
+  for (const Contact& contact : contacts_) {
     if (contact.body_a == slot || contact.body_b == slot) {
       wake_slot(contact.body_a);
       wake_slot(contact.body_b);
@@ -350,7 +351,7 @@ void World::set_motion(BodyId id, const Pose& X_WL, const Vec3& v_WB, const Vec3
   }
   wake(id);
   land(slot);
-  for (const Contact& contact : contacts_.all()) {
+  for (const Contact& contact : contacts_) {
     if (contact.body_a == slot) wake_slot(contact.body_b);
     if (contact.body_b == slot) wake_slot(contact.body_a);
   }
@@ -383,7 +384,7 @@ void World::set_time_step(double time_step) {
   steps_before_ = step_count_;
   options_ = options;
   for (ActivePush& active : pushes_) active.steps_left /= ratio;
-  for (Contact& contact : contacts_.all()) {
+  for (Contact& contact : contacts_) {
     for (Vec3& impulse : contact.impulse) impulse *= ratio;
     for (Vec3& moment : contact.moment) moment *= ratio;
   }

@@ -29,9 +29,8 @@ struct Geometry {
   Shape shape;
   Pose X_BS;
   Material material;
-  double radius = 0.0;  ///< Of a ball about S's origin that holds the shape [m].
-  /// Of a ball about the centre of mass that holds it [m].
-  double reach() const { return X_BS.p.norm() + radius; }
+  double radius = 0.0;          ///< Of a ball about S's origin that holds the shape [m].
+  double reach = 0.0;           ///< Of a ball about the centre of mass that holds it [m].
   double fat_margin = 0.0;      ///< Slack of its broad-phase box [m].
   double contact_margin = 0.0;  ///< Gap at which its contacts start [m].
 };
@@ -231,7 +230,6 @@ class World {
   void note_way(std::uint32_t slot, const StepContext& step);
   /// The same, of a body that was moved already, from `start`.
   void note_end(std::uint32_t slot, const Motion& start, const StepContext& step);
-  void advance_undisturbed(std::size_t island, const StepContext& step);
   using AdvanceIsland = void (World::*)(std::size_t island, const StepContext& step);
   /// Advances the island as in a step without impacts, and draws the way there between.
   void draw_way(std::size_t island, const StepContext& step, AdvanceIsland advance);
@@ -362,7 +360,7 @@ class World {
   bool suits_midpoint(const StepContext& part, const std::vector<Touch>& touches) const;
   bool may_turn(const Touch& touch, const StepContext& part) const;
   double fastest_turning() const;
-  double length_of_part(const StepContext& rest) const;
+  double length_of_part(const StepContext& rest, double turning) const;
   bool try_midpoint(std::size_t island, const StepContext& part, Midpoint& way);
   bool shorten_to_end_of_slide(std::size_t island, StepContext& part, Midpoint& way);
   void finish_midpoint(std::size_t island, const StepContext& part, const Midpoint& way);

@@ -36,7 +36,7 @@ void for_each_dynamic(const World& world, F f) {
 double reach(const World& world, std::uint32_t slot) {
   double largest = 0.0;
   for (const std::uint32_t index : world.body(slot).geometries) {
-    largest = std::max(largest, world.geometries()[index].reach());
+    largest = std::max(largest, world.geometries()[index].reach);
   }
   return largest;
 }

@@ -60,10 +60,10 @@ TEST(ContactGraph, PairsThatComeLateMoreThanOnceAreHeldOnce) {
   EXPECT_EQ(graph.insert_late({{1, 9}}, contact_of), 1u);
   EXPECT_EQ(graph.insert_late({{0, 1}, {1, 9}, {5, 6}}, contact_of), 1u);
   graph.settle();
-  ASSERT_EQ(graph.all().size(), 3u);
-  EXPECT_EQ(graph.all()[0].pair, (GeometryPair{0, 1}));
-  EXPECT_EQ(graph.all()[1].pair, (GeometryPair{1, 9}));
-  EXPECT_EQ(graph.all()[2].pair, (GeometryPair{5, 6}));
+  ASSERT_EQ(graph.size(), 3u);
+  EXPECT_EQ(graph[0].pair, (GeometryPair{0, 1}));
+  EXPECT_EQ(graph[1].pair, (GeometryPair{1, 9}));
+  EXPECT_EQ(graph[2].pair, (GeometryPair{5, 6}));
 }
 
 }  // namespace

@@ -105,7 +105,7 @@ TEST(Surface, ABallRollsOverFlatTrianglesAsOnThePlane) {
 Vec3 support_force(World& world, int steps) {
   run(world, steps);
   Vec3 impulse = Vec3::Zero();
-  for (const Contact& contact : world.contacts().all()) {
+  for (const Contact& contact : world.contacts()) {
     const double sign = contact.body_b == 1 ? 1.0 : -1.0;
     for (int i = 0; i < contact.manifold.count; ++i)
       impulse += sign * contact.impulse[static_cast<std::size_t>(i)];
@@ -122,7 +122,7 @@ TEST(Surface, ABallRestsInAGroove) {
   EXPECT_NEAR(world.motion(1).x.z(), 0.5 * std::sqrt(2.0), 1e-6);
   EXPECT_NEAR(world.motion(1).x.x(), 0.0, 1e-6);
   int points = 0;
-  for (const Contact& contact : world.contacts().all()) {
+  for (const Contact& contact : world.contacts()) {
     points += contact.manifold.count;
     // Both walls push at 45 degrees with m g / sqrt(2).
     if (contact.manifold.count == 0) continue;

@@ -123,10 +123,11 @@ def test_words_are_completed(tmp_path):
     assert complete("tumble", "--js") == ["--json"]
 
 
-def test_every_subcommand_speaks_json(free_bodies, wire):
+def test_every_subcommand_speaks_json(free_bodies, wire, tmp_path):
     for arguments in (["list"], ["pause"], ["step", "3"], ["snapshot", "a"], ["restore", "a"], ["reset"], ["resume"],
                       ["push", "ball", "--force", "0", "0", "1", "--seconds", "0.1"], ["watch", "ball", "--count", "2"], ["doctor"],
-                      ["contacts", "on"], ["plot", "ball"], ["remove", "ball"]):
+                      ["contacts", "on"], ["plot", "ball"], ["record", tmp_path / "run.lcm", "--seconds", "0.5"],
+                      ["remove", "ball"]):
         done = run_tumble("--json", *arguments)
         assert done.returncode == 0, (arguments, done.stderr)
         decoder, text, found = json.JSONDecoder(), done.stdout.strip(), 0

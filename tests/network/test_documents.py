@@ -50,8 +50,8 @@ def test_commands(page, tmp_path):
         server.wait_for_output("TUMBLE_STATE", 20.0)
         run = 0
         for line in shell_lines(page):
-            # A client that runs until Ctrl-C is for test_examples.py, servers are for test_recordings.
-            if is_recording(line) or line.endswith("watch.py") or (command := command_of(line)) is None:
+            # A client that runs until Ctrl-C is for test_examples.py and test_recording.py, servers are for test_recordings.
+            if is_recording(line) or line.endswith(("watch.py", "record run.lcm")) or (command := command_of(line)) is None:
                 continue
             done = subprocess.run(command, cwd=ROOT, check=False, timeout=60, capture_output=True, text=True)
             assert done.returncode == 0, f"{page}: {line}\n{done.stdout}{done.stderr}"
@@ -77,7 +77,7 @@ def test_examples_in_the_help_of_tumble(start, wire, tmp_path):
     start(SCENES / "ball.sdf")
     wire.next("STATE", 20.0)
     subcommands = re.findall(r"^  (\w+)  ", run_shell("tumble --help", tmp_path).partition("Subcommands:")[2], re.M)
-    assert len(subcommands) == 17
+    assert len(subcommands) == 18
     shown = {name: examples_of(run_shell(f"tumble {name} --help", tmp_path)) for name in subcommands}
     assert [name for name, lines in shown.items() if not lines] == ["pause", "resume", "reset"]
     for name in sorted(subcommands, key=lambda name: (name == "remove", subcommands.index(name))):

@@ -2,11 +2,14 @@
 import random
 import re
 import shutil
+import signal
+import subprocess
 import time
 
+import lcm
 import pytest
 from log import Log
-from server import SCENES, Server, run_server
+from server import CLI, SCENES, Server, run_server, run_tumble
 from wire import APPLIED, QUEUED, Wire
 
 PUSH = (0.5, 0.0, 0.0)  # [N], for one step
@@ -164,6 +167,28 @@ def test_what_is_no_recording_is_refused(tmp_path):
     assert done.returncode == 2 and "x.lcm" in done.stderr and "not a log" in done.stderr
     done = run_server("--record", path, "--steps", 1, "--demo", "cradle")
     assert done.returncode == 1 and "exists" in done.stderr and path.read_bytes() == b"not a log"
+
+
+def test_a_client_records_what_its_world_carries_and_no_other(start, wire, tmp_path):
+    path = tmp_path / "bus.lcm"
+    start(SCENES / "free.sdf")
+    start(SCENES / "free.sdf", "--world", "TUMBLE_TOO")
+    wire.next("HEARTBEAT", 10.0)
+    with subprocess.Popen([CLI, "record", path], stdout=subprocess.PIPE, text=True) as recorder:
+        wire.wait(lambda: path.exists() and path.stat().st_size > 0)
+        answer = wire.ask(wire.force(body=wire.bodies()["ball"][0], generation=1, force=PUSH, duration=0.1))
+        time.sleep(1.0)  # the whole catalogue in 0.75 s
+        recorder.send_signal(signal.SIGINT)
+        said = recorder.communicate(timeout=10.0)[0]
+        assert recorder.returncode == 0
+    events = list(lcm.EventLog(str(path)))
+    assert f"{path}: {len(events)} messages" in said
+    assert {event.channel for event in events} == {
+        f"TUMBLE_{kind}" for kind in ("STATE", "STATS", "CATALOG", "HEARTBEAT", "FORCE", "ACK")}
+    assert [force.sequence for force in Log(path).commands] == [answer.sequence]
+    again = run_tumble("record", path)
+    assert again.returncode == 1 and f"{path}: there is such a file" in again.stderr
+    assert list(lcm.EventLog(str(path))) and path.stat().st_size > 0
 
 
 def test_a_server_that_cannot_start_writes_nothing(tmp_path):

@@ -32,6 +32,7 @@ void add_push(CLI::App& app, const Globals& globals, Action& action);   // push,
 void add_spawn(CLI::App& app, const Globals& globals, Action& action);  // spawn, set, remove
 void add_control(CLI::App& app, const Globals& globals,
                  Action& action);  // pause, resume, step, reset, snapshot, restore, contacts, plot
+void add_record(CLI::App& app, const Globals& globals, Action& action);
 void add_doctor(CLI::App& app, const Globals& globals, Action& action);
 void add_completion(CLI::App& app, const Globals& globals, Action& action);
 

@@ -44,6 +44,7 @@ constexpr Examples kExamples[] = {
     {"restore", "  tumble restore before\n"},
     {"contacts", "  tumble contacts on\n"},
     {"plot", "  tumble plot ball\n"},
+    {"record", "  tumble record run.lcm --seconds 2\n  lcm-logplayer run.lcm\n"},
     {"doctor", "  tumble doctor\n  tumble --json doctor --network-only\n"},
     {"completion", "  source <(tumble completion)\n"},
 };
@@ -80,7 +81,8 @@ int read_and_run(int argc, char** argv) {
   app.set_version_flag("--version", "tumble " TUMBLE_VERSION);
   app.require_subcommand(1);
   add_globals(app, globals);
-  for (const auto add : {add_list, add_watch, add_push, add_spawn, add_control, add_doctor, add_completion}) {
+  for (const auto add :
+       {add_list, add_watch, add_push, add_spawn, add_control, add_record, add_doctor, add_completion}) {
     add(app, globals, action);
   }
   for (const Examples& examples : kExamples) {

@@ -111,6 +111,8 @@ class Search {
   void expand();
   bool meets_best_only(const DifferenceHull::Face& face) const;
   bool explains(const DifferenceHull::Face& face, const Reach& reach) const;
+  bool bends_up(PiecePair pair, const Vec3& n) const;
+  bool falls_towards_best(const Reach& reach) const;
   bool is_furthest(const CandidateDirection& candidate) const;
   enum class Descent { nowhere, under_way, arrived };
   Descent converge(CandidateDirection& candidate) const;
@@ -371,8 +373,20 @@ bool Search::explains(const DifferenceHull::Face& face, const Reach& reach) cons
     const std::optional<Ridge> ridge = ridge_at(best_, reach.n);
     return ridge && ridge->second > 0.0;
   }
-  const Vec3 u = perpendicular_to(reach.n), v = reach.n.cross(u);
-  return curvature(reach.pieces, reach.n, u, v).is_positive(reach.h());
+  return bends_up(reach.pieces, reach.n) && (best_.count == 1 || falls_towards_best(reach));
+}
+
+/// Whether the reach of a piece has a minimum's curvature along n.
+bool Search::bends_up(PiecePair pair, const Vec3& n) const {
+  const Vec3 u = perpendicular_to(n), v = n.cross(u);
+  return curvature(pair, n, u, v).is_positive(n.dot(point(pair, n)));
+}
+
+/// A best direction on a ridge is no minimum of its pieces: if one of them does not bend up there, or falls away from there
+/// towards a direction, it may have a minimum of its own in between.
+bool Search::falls_towards_best(const Reach& reach) const {
+  const Vec3 onward = best_.n * best_.n.dot(reach.n) - reach.n;
+  return bends_up(reach.pieces, best_.n) && point(reach.pieces, best_.n).dot(onward) <= kLevelSlope * size_;
 }
 
 void Search::expand() {

@@ -88,7 +88,7 @@ class Search {
   Reach reach(const Vec3& n) {
     ++evaluations_;
     const ConvexPieces::Point a = a_.furthest(n), b = b_.furthest(-n);
-    const Reach reach{n, a.p_A, b.p_A, {a.piece, b.piece}};
+    Reach reach{n, a.p_A, b.p_A, {a.piece, b.piece}};
     if (reach.h() < best_.h - (best_.optimal ? kReachRounding * size_ : 0.0)) {
       best_ = {n, reach.h(), 0, {}, false};
       best_.add(reach.pieces);

@@ -59,7 +59,7 @@ class OutputArchive : public cereal::OutputArchive<OutputArchive, cereal::AllowE
   explicit OutputArchive(std::string& bytes) : Base(this), bytes_(bytes) {}
   OutputArchive(const OutputArchive&) = delete;
   OutputArchive& operator=(const OutputArchive&) = delete;
-  ~OutputArchive() { bytes_.resize(static_cast<std::size_t>(at_ - bytes_.data())); }
+  ~OutputArchive() override { bytes_.resize(static_cast<std::size_t>(at_ - bytes_.data())); }
 
   template <typename... Types>
   OutputArchive& operator()(Types&&... objects) {
@@ -86,7 +86,7 @@ class OutputArchive : public cereal::OutputArchive<OutputArchive, cereal::AllowE
     constexpr std::size_t size = (... + kFlatBytes<Flat>);
     if (static_cast<std::size_t>(end_ - at_) < size) grow(size);
     char* at = at_;  // a copy: what is written might be at_ itself, for all the compiler knows
-    ((std::memcpy(at, &objects, kFlatBytes<Flat>), at += kFlatBytes<Flat>), ...);
+    ((std::memcpy(at, static_cast<const void*>(&objects), kFlatBytes<Flat>), at += kFlatBytes<Flat>), ...);
     at_ = at;
   }
   [[gnu::noinline]] void grow(std::size_t size) {

@@ -111,7 +111,7 @@ class Search {
   void expand();
   bool meets_best_only(const DifferenceHull::Face& face) const;
   bool explains(const DifferenceHull::Face& face, const Reach& reach) const;
-  bool bends_up(PiecePair pair, const Vec3& n) const;
+  bool bends_up(PiecePair pair, const Vec3& n, double slack = 0.0) const;
   bool falls_towards_best(const Reach& reach) const;
   bool is_furthest(const CandidateDirection& candidate) const;
   enum class Descent { nowhere, under_way, arrived };
@@ -342,8 +342,7 @@ bool Search::is_minimum(const CandidateDirection& c) const {
     const std::optional<Ridge> ridge = ridge_at(c, c.n);
     return ridge && ridge->second >= -kBendsDown * size_;
   }
-  const Vec3 u = perpendicular_to(c.n), v = c.n.cross(u);
-  return curvature(c.pieces[0], c.n, u, v).is_positive(c.n.dot(point(c.pieces[0], c.n)) - kBendsDown * size_);
+  return bends_up(c.pieces[0], c.n, kBendsDown * size_);
 }
 
 void Search::grow_to_best() {
@@ -376,10 +375,10 @@ bool Search::explains(const DifferenceHull::Face& face, const Reach& reach) cons
   return bends_up(reach.pieces, reach.n) && (best_.count == 1 || falls_towards_best(reach));
 }
 
-/// Whether the reach of a piece has a minimum's curvature along n.
-bool Search::bends_up(PiecePair pair, const Vec3& n) const {
+/// Whether the reach of a piece has a minimum's curvature along n, up to the slack [m].
+bool Search::bends_up(PiecePair pair, const Vec3& n, double slack) const {
   const Vec3 u = perpendicular_to(n), v = n.cross(u);
-  return curvature(pair, n, u, v).is_positive(n.dot(point(pair, n)));
+  return curvature(pair, n, u, v).is_positive(n.dot(point(pair, n)) - slack);
 }
 
 /// A best direction on a ridge is no minimum of its pieces: if one of them does not bend up there, or falls away from there

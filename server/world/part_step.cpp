@@ -83,26 +83,24 @@ Advance World::advance_until_cut(std::size_t island, StepContext& rest, bool may
 
 const std::vector<std::uint32_t>& World::contacts_of_island(std::size_t island) {
   const Islands& islands = scratch_.islands;
-  const ContactGraph& contacts = contacts_;
   std::vector<std::uint32_t>& found = scratch_.island_contacts;
   found.clear();
   for (std::uint32_t i = islands.edge_begin[island]; i < islands.edge_begin[island + 1]; ++i) {
     const std::uint32_t source = scratch_.edge_source[islands.edges[i]];
-    if (source < contacts.size()) found.push_back(source);
+    if (source < contacts_.size()) found.push_back(source);
   }
   const std::size_t touching = found.size();
   for (std::size_t i = 0; i < touching; ++i) {
-    if (contacts[found[i]].pair.part > 0) add_other_triangles(found[i], touching);
+    if (contacts_[found[i]].pair.part > 0) add_other_triangles(found[i], touching);
   }
   return found;
 }
 
 /// Contacts are sorted by pairs, so those with the same surface stand side by side.
 void World::add_other_triangles(std::uint32_t index, std::size_t touching) {
-  const ContactGraph& contacts = contacts_;
   std::vector<std::uint32_t>& found = scratch_.island_contacts;
   const auto is_same_pair = [&](std::uint32_t i) {
-    return contacts[i].pair.a == contacts[index].pair.a && contacts[i].pair.b == contacts[index].pair.b;
+    return contacts_[i].pair.a == contacts_[index].pair.a && contacts_[i].pair.b == contacts_[index].pair.b;
   };
   const auto is_known = [&](std::uint32_t i) {
     return std::find(found.begin(), found.end(), i) != found.end();
@@ -110,8 +108,8 @@ void World::add_other_triangles(std::uint32_t index, std::size_t touching) {
   if (found.size() > touching && is_same_pair(found.back())) return;  // by an earlier triangle
   std::uint32_t i = index;
   while (i > 0 && is_same_pair(i - 1)) --i;
-  for (; i < contacts.size() && is_same_pair(i); ++i) {
-    if (contacts[i].restitution == 0.0 && !contacts[i].fast && !is_known(i)) found.push_back(i);
+  for (; i < contacts_.size() && is_same_pair(i); ++i) {
+    if (contacts_[i].restitution == 0.0 && !contacts_[i].fast && !is_known(i)) found.push_back(i);
   }
 }
 

@@ -46,9 +46,8 @@ void ContactGraph::settle() {
 void ContactGraph::remove(const std::vector<std::uint32_t>& indices) {
   auto gone = indices.begin();
   std::uint32_t index = 0;
-  std::erase_if(order_, [&](const Entry& entry) {
+  remove_if([&](const Contact&) {
     if (gone == indices.end() || *gone != index++) return false;
-    free_.push_back(entry.place);
     ++gone;
     return true;
   });

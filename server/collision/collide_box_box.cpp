@@ -66,7 +66,7 @@ Manifold make_manifold(const BoxPair& pair, const BoxAxis& axis, const BoxFace& 
                        double margin, KeptClip& kept) {
   const bool flat_a = face_a.cosine > ContactTolerance::kFlat,
              flat_b = face_b.cosine > ContactTolerance::kFlat;
-  if (axis.kind == BoxAxis::Kind::edges && !(flat_a && flat_b)) return cross_edges(pair, axis, margin);
+  if (axis.kind == BoxAxis::Kind::edges && !(flat_a || flat_b)) return cross_edges(pair, axis, margin);
   return clip_faces(pair, axis, face_a, face_b, axis.kind == BoxAxis::Kind::face_a || flat_a, margin, kept);
 }
 

@@ -157,7 +157,7 @@ struct FacePair {
   std::uint32_t a, b;
   double cosine_a, cosine_b;  ///< Of the angle to the axis.
 
-  bool are_flat() const { return std::min(cosine_a, cosine_b) > ContactTolerance::kFlat; }
+  bool either_is_flat() const { return std::max(cosine_a, cosine_b) > ContactTolerance::kFlat; }
   bool lie_face_to_face() const { return std::min(cosine_a, cosine_b) > ContactTolerance::kFaceToFace; }
 };
 
@@ -184,7 +184,7 @@ bool reference_is_a(const Facet& facet, const FacePair& faces) {
 
 Manifold make_manifold(const PolytopePair& pair, const Facet& facet, const FacePair& faces, double margin,
                        KeptClip& kept) {
-  if (facet.kind == Facet::Kind::edges && !faces.are_flat()) return cross_edges(pair, facet, margin);
+  if (facet.kind == Facet::Kind::edges && !faces.either_is_flat()) return cross_edges(pair, facet, margin);
   const PlacedFace a(pair.a, faces.a), b(pair.b, faces.b, &pair);
   const bool face_to_face = faces.lie_face_to_face(), of_a = reference_is_a(facet, faces);
   return clip_faces(of_a ? a : b, of_a ? b : a, of_a, facet, number_of(faces.a, faces.b, of_a), margin,

@@ -23,8 +23,8 @@ struct ContactTolerance {
   static constexpr double kNoCrossing = 1e-12;
   /// Cosine of the angle between the contact normal and both faces of bodies that lie face to face: 0.01 rad.
   static constexpr double kFaceToFace = 1.0 - 5e-5;
-  /// Cosine of 0.1 rad. Edges that cross under faces as flat as this to their axis lie in a contact of these faces: it
-  /// keeps the faces\' whole polygon of points (a capsule: both ends), only measured along the edges\' axis.
+  /// Cosine of 0.1 rad. Edges that cross under a face as flat as this to their axis lie in a contact of that face: it keeps
+  /// the whole polygon of points (an edge across the face, or a capsule: both ends), only measured along the edges\' axis.
   static constexpr double kFlat = 0.995;
 };
 

@@ -2,8 +2,8 @@
 #include "summary.h"
 
 #include <fmt/format.h>
-#include <time.h>
 
+#include <ctime>
 #include <nlohmann/json.hpp>
 
 namespace tumble {
@@ -41,6 +41,7 @@ Json counters_json(const Counters& c) {
       {"sweeps", c.sweeps},
       {"solver_iterations", c.solver_iterations},
       {"newton_steps", c.newton_steps},
+      {"exact_work", c.exact_work},
       {"islands_exact", c.islands_exact},
       {"patterns_kept", c.patterns_kept},
       {"patterns_made", c.patterns_made},

@@ -20,6 +20,7 @@ struct Counters {
   std::uint64_t sweeps = 0;
   std::uint64_t solver_iterations = 0;  ///< Factorizations of the exact solver: interior point and Newton.
   std::uint64_t newton_steps = 0;       ///< Those of Newton's method.
+  std::uint64_t exact_work = 0;         ///< Products of 6 x 6 blocks in them: what options.work_rate limits.
   std::uint64_t islands_exact = 0;  ///< Solved without sub-steps: by sweeps, Newton or the interior point.
   std::uint64_t patterns_kept = 0, patterns_made = 0;  ///< Patterns of factorization found again, and made.
   std::uint64_t solver_fallbacks = 0;                  ///< Islands without a trustworthy exact solution.

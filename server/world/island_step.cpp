@@ -85,14 +85,10 @@ void World::solve_problem(const StepContext& step) {
 
 /// True if to rounding.
 bool World::solve_velocities(const StepContext& step) {
-  ContactProblem& problem = scratch_.problem;
-  SolverSettings settings = step.solver_settings;
-  if (options_.work_rate > 0.0) settings.work_left = work_saved_;
   const bool refines = refines_joints();
-  if (refines) scratch_.free_bodies = problem.bodies;
+  if (refines) scratch_.free_bodies = scratch_.problem.bodies;
   for (int pass = 1;; ++pass) {
-    const SolverReport solved = step.solve(problem, settings);
-    count_solution(solved);
+    const SolverReport solved = solve(step);
     step_residual_ = std::max(step_residual_, solved.residual);
     scratch_.residual = solved.residual;
     const bool last = !refines || !solved.exact || pass == options_.joint_passes;
@@ -101,11 +97,21 @@ bool World::solve_velocities(const StepContext& step) {
   }
 }
 
+SolverReport World::solve(const StepContext& step, double tolerance) {
+  SolverSettings settings = step.solver_settings;
+  settings.tolerance = std::min(settings.tolerance, tolerance);
+  if (options_.work_rate > 0.0) settings.work_left = work_saved_;
+  const SolverReport report = step.solve(scratch_.problem, settings);
+  count_solution(report);
+  return report;
+}
+
 void World::count_solution(const SolverReport& report) {
   work_saved_ -= report.work;
   counters_.sweeps += static_cast<std::uint64_t>(report.sweeps);
   counters_.solver_iterations += static_cast<std::uint64_t>(report.iterations + report.newton_steps);
   counters_.newton_steps += static_cast<std::uint64_t>(report.newton_steps);
+  counters_.exact_work += static_cast<std::uint64_t>(report.work);
   counters_.islands_exact += report.exact && !report.accepted ? 1 : 0;
   counters_.solver_fallbacks += report.fallback ? 1 : 0;
   ++(report.accepted ? counters_.islands_accepted : counters_.islands_solved);

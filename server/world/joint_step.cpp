@@ -82,11 +82,7 @@ void World::project_joints(std::size_t island, const StepContext& part) {
     fastest = std::max(fastest, std::abs(row.n.dot(u)));
   }
   if (fastest <= kHeld) return;
-  SolverSettings settings = part.solver_settings;
-  settings.tolerance = std::min(settings.tolerance, kHeld);
-  const SolverReport report = part.solve(problem, settings);
-  count_solution(report);
-  if (report.exact) store_blow();
+  if (solve(part, kHeld).exact) store_blow();
 }
 
 /// The joints of the island alone, as they are now.

@@ -108,9 +108,7 @@ void World::land_island(std::size_t island, const StepContext& part) {
     c.lambda.setZero();
   }
   prepare(problem, part.bounds);
-  SolverSettings settings = part.solver_settings;
-  settings.tolerance = std::min(settings.tolerance, kSharp);
-  if (!part.solve(problem, settings).exact) reflect(problem);
+  if (!solve(part, kSharp).exact) reflect(problem);
   store_blow();
 }
 

@@ -287,8 +287,7 @@ bool World::solve_mean_problem(const StepContext& part, Midpoint& way) {
   const std::vector<Motion>& start = scratch_.part_start.motions;
   ContactProblem& problem = scratch_.problem;
   const std::vector<SolverBody> free = problem.bodies;
-  SolverSettings settings = part.solver_settings;
-  settings.tolerance = std::min(settings.tolerance, kSharp * part.h / options_.time_step);
+  const double tolerance = kSharp * part.h / options_.time_step;
   std::vector<Vec3> balance(scratch_.problem_movable, Vec3::Zero());
   way.ends = start;
   std::vector<double> bounds;
@@ -297,8 +296,7 @@ bool World::solve_mean_problem(const StepContext& part, Midpoint& way) {
   for (int pass = 1;; ++pass) {
     problem.bodies = free;
     for (std::uint32_t i = 0; i < scratch_.problem_movable; ++i) problem.bodies[i].w += balance[i];
-    const SolverReport report = part.solve(problem, settings);
-    count_solution(report);
+    const SolverReport report = solve(part, tolerance);
     bool gainless = false, settled = false;
     if (report.exact) {
       double work = 0.0, load = 0.0;

@@ -213,9 +213,7 @@ void World::hold_touches(std::size_t island, const std::vector<Touch>& touches, 
   problem.contacts.clear();
   problem.turnings.clear();
   prepare(problem, part.bounds);
-  SolverSettings settings = part.solver_settings;
-  settings.tolerance = std::min(settings.tolerance, kHeld);
-  if (part.solve(problem, settings).exact) store_blow();
+  if (solve(part, kHeld).exact) store_blow();
 }
 
 }  // namespace tumble

@@ -260,6 +260,8 @@ class World {
   void end_problem();
   void solve_problem(const StepContext& step);
   bool solve_velocities(const StepContext& step);
+  /// Solves the problem to the tolerance [m/s] or the step's own, whichever is less, with what is left of the work rate.
+  SolverReport solve(const StepContext& step, double tolerance = kInfinity);
   void count_solution(const SolverReport& report);
   /// What overlaps at the start of the step, after its velocities are solved.
   void shift_apart(const StepContext& step);

@@ -34,6 +34,7 @@ Hit make_hit(const QueryHit& hit) {
 
 std::vector<Hit> make_hits(const std::vector<BodyId>& bodies) {
   std::vector<Hit> hits;
+  hits.reserve(bodies.size());
   for (const BodyId body : bodies) hits.push_back({.body = body});
   return hits;
 }

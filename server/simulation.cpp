@@ -84,7 +84,7 @@ Outcome Simulation::apply_control(const control_t& command) {
 }
 
 Outcome Simulation::push(const force_command_t& command) {
-  const Outcome outcome = apply_force(now_.world, command);
+  Outcome outcome = apply_force(now_.world, command);
   if (outcome.status != Status::applied) return outcome;
   const double least = world().options().time_step;  // a duration of 0 is one step
   now_.pushes.push_back({command, world().time() + std::max(command.duration, least)});
@@ -107,7 +107,7 @@ std::vector<PushView> Simulation::view_pushes() const {
 }
 
 Outcome Simulation::watch(const control_t& command) {
-  const Outcome found = find_body(now_.world, command.body, command.generation);
+  Outcome found = find_body(now_.world, command.body, command.generation);
   if (found.status != Status::applied) return found;
   std::erase_if(watched_, [this](BodyId id) { return !now_.world.is_valid(id); });
   const BodyId id{static_cast<std::uint32_t>(found.body), static_cast<std::uint32_t>(found.generation)};
@@ -121,7 +121,7 @@ Outcome Simulation::watch(const control_t& command) {
 }
 
 Outcome Simulation::unwatch(const control_t& command) {
-  const Outcome found = find_body(now_.world, command.body, command.generation);
+  Outcome found = find_body(now_.world, command.body, command.generation);
   std::erase_if(watched_, [&](BodyId id) { return id.index == static_cast<std::uint32_t>(command.body); });
   return found;
 }

@@ -37,6 +37,12 @@ std::array<double, 3> nearest_to_origin(const Vec3& a, const Vec3& b, const Vec3
   return {va / sum, vb / sum, vc / sum};
 }
 
+/// Faces that have the origin outside come first, the farthest of them foremost; then the others by how far out they are.
+bool is_searched_before(const DifferenceHull::Face& a, const DifferenceHull::Face& b) {
+  if (a.outside != b.outside) return a.outside;
+  return a.outside ? a.bound > b.bound : a.bound < b.bound;
+}
+
 }  // namespace
 
 void DifferenceHull::add_face(std::uint16_t i, std::uint16_t j, std::uint16_t k) {
@@ -148,13 +154,7 @@ DifferenceHull::Face* DifferenceHull::least() {
   for (std::size_t f = 0; f < num_faces_; ++f) {
     Face& face = faces_[f];
     if (face.closed) continue;
-    if (best == nullptr) {
-      best = &face;
-    } else if (face.outside != best->outside) {
-      if (face.outside) best = &face;
-    } else if (face.outside ? face.bound > best->bound : face.bound < best->bound) {
-      best = &face;
-    }
+    if (best == nullptr || is_searched_before(face, *best)) best = &face;
   }
   return best;
 }

@@ -91,6 +91,7 @@ void replace(Manifold& manifold, const Make& make) {
 
 template <typename Value>
 bool has_same_bits(const Value& value, const Value& other) {
+  // NOLINTNEXTLINE(bugprone-suspicious-memory-comparison): the bits are meant
   return std::memcmp(&value, &other, sizeof value) == 0;
 }
 

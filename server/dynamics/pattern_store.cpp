@@ -22,7 +22,7 @@ std::shared_ptr<const BlockPattern> PatternStore::find(std::uint32_t size,
     return at->pattern;
   }
   ++made_;
-  const auto pattern = std::make_shared<const BlockPattern>(size, edges, limit);
+  auto pattern = std::make_shared<const BlockPattern>(size, edges, limit);
   kept_.insert(at, {key, size, limit, edges, pattern, true});
   return pattern;
 }

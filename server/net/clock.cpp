@@ -1,7 +1,7 @@
 // See clock.h.
 #include "net/clock.h"
 
-#include <time.h>
+#include <ctime>
 
 namespace tumble {
 namespace {

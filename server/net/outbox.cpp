@@ -1,10 +1,9 @@
 // See outbox.h.
 #include "net/outbox.h"
 
-#include <signal.h>
-
 #include <algorithm>
 #include <chrono>
+#include <csignal>
 #include <utility>
 
 namespace tumble {

@@ -45,7 +45,7 @@ double read_anchors(SdfElement& element, const Bodies& bodies, Connection& conne
 
 template <class Connection>
 std::string read_name(SdfElement& element, const std::vector<Connection>& others) {
-  const std::string name = element.required_attribute("name");
+  std::string name = element.required_attribute("name");
   const auto same = [&](const Connection& other) { return other.name == name; };
   if (std::any_of(others.begin(), others.end(), same)) element.fail_attribute("name", "is used twice", name);
   check_body_name(element, name);

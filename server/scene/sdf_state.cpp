@@ -2,6 +2,8 @@
 // turned into that of the centre of mass here.
 #include "scene/sdf_state.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "scene/sdf_model.h"
@@ -37,10 +39,10 @@ BodyDefinition* find_body(Scene& scene, const std::string& name) {
 void read_model_state(SdfElement& model, Scene& scene) {
   const std::string name = model.required_attribute("name");
   for (SdfElement& link : model.children({"link"})) {
-    const std::string link_name = link.required_attribute("name");
-    BodyDefinition* body = find_body(scene, name + "::" + link_name);
+    const std::string full_name = fmt::format("{}::{}", name, link.required_attribute("name"));
+    BodyDefinition* body = find_body(scene, full_name);
     if (!body) body = find_body(scene, name);  // a lone link's body is called like its model
-    if (!body) link.fail("no such body", name + "::" + link_name);
+    if (!body) link.fail("no such body", full_name);
     if (std::optional<SdfElement> pose = link.child("pose")) set_pose(*pose, *body);
     if (std::optional<SdfElement> velocity = link.child("velocity")) set_velocity(*velocity, *body);
     link.finish();

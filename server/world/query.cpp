@@ -187,6 +187,7 @@ std::vector<QueryHit> cast_ray_through(const World& world, const Vec3& origin, c
   });
   std::sort(found.begin(), found.end());
   std::vector<QueryHit> hits;
+  hits.reserve(found.size());
   for (const GeometryHit& hit : found) hits.push_back(named(world, hit));
   return hits;
 }

@@ -138,7 +138,7 @@ Answer World::advance(std::int64_t count, const std::function<void(std::int64_t)
   control_t command = make_control(control_t::VERB_STEP);
   command.count = count;
   const std::int64_t sequence = post(command, kControlSuffix);
-  const Answer answer = wait(sequence);
+  Answer answer = wait(sequence);
   if (!answer.accepted()) return answer;
   const std::int64_t end = answer.step + count;
   const auto whole = [&] { return picture_.whole_step() >= end; };

@@ -33,8 +33,8 @@ const BodyDefinition& find(const Scene& scene, const std::string& name) {
 }
 
 TEST(Demo, NamesAreSortedAndEveryTextIsThere) {
-  const std::vector<std::string_view> expected = {"cradle",  "incline", "pile",
-                                                  "pyramid", "springs", "terrain", "tumbling"};
+  const std::vector<std::string_view> expected = {"cradle",  "incline", "pile",    "pyramid",
+                                                  "springs", "terrain", "tumbling"};
   EXPECT_EQ(demo_names(), expected);
   for (const std::string_view name : demo_names()) EXPECT_EQ(demo(name).name, name);
   EXPECT_TRUE(demo_text("nothing").empty());

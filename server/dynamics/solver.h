@@ -27,13 +27,13 @@ struct SolverSettings {
   int sub_steps = 4;                      ///< soft_step: at least so many in a step,
   double longest_sub_step = 1.0 / 960.0;  ///< [s] and none longer: overlaps grow with its square.
   /// automatic: largest work of a factorization, in products of 6 x 6 blocks, of an island that is solved exactly: as many
-  /// times more as its heaviest body has the mass of its lightest, up to six times. A heap of 40 bodies is within it, as are
+  /// times more as its heaviest body has the mass of its lightest, up to 18 times. A heap of 40 bodies is within it, as are
   /// chains and towers of hundreds. A larger one on the move takes 50 factorizations a step and is no better for it (./run
   /// bench error: heap, inelastic_666), unless much rests on little, which sub-steps do not carry.
-  double exact_work = 500.0;
+  double exact_work = 100.0;
   /// automatic: as many times more for islands slower than exact_calm_speed [m/s, rad/s], which end in a few factorizations and
   /// then rest. A wall of 210 boxes is within it, a heap of 1000 bodies is not.
-  double exact_calm_factor = 180.0;
+  double exact_calm_factor = 900.0;
   double exact_calm_speed = 0.1;
   /// automatic: what the factorizations of this island may take together, in the same products; where more is expected,
   /// soft_step's solution is taken.

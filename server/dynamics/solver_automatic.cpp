@@ -11,7 +11,7 @@ namespace {
 /// Factorizations that an island takes which is not near its solution: 7 (a wall) to 40 (a heap).
 constexpr double kExpected = 10.0;
 /// As many times more work are heavy loads worth: a wall of 45 cubes under 200 times their mass.
-constexpr double kMostForLoads = 6.0;
+constexpr double kMostForLoads = 18.0;
 
 }  // namespace
 

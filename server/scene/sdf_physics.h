@@ -40,6 +40,7 @@ void for_each_option(OptionsType& options, Visit&& visit) {
   visit("max_cuts", options.max_cuts);
   visit("midpoint_bodies", options.midpoint_bodies);
   visit("midpoint_turn", options.midpoint_turn);
+  visit("crowd_turning", options.crowd_turning);
   visit("taut_parts", options.taut_parts);
   visit("joint_passes", options.joint_passes);
   visit("work_rate", options.work_rate);

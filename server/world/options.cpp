@@ -6,6 +6,11 @@
 #include <string>
 
 namespace tumble {
+namespace {
+
+constexpr double kMostTurning = 1e6;  // [rad/s]
+
+}  // namespace
 
 void set_accuracy(Options& options, Accuracy accuracy) {
   SolverSettings& solver = options.solver_settings;
@@ -13,8 +18,8 @@ void set_accuracy(Options& options, Accuracy accuracy) {
     case Accuracy::fast:
       solver.max_sweeps = 8;
       solver.tolerance = 1e-6;
-      solver.exact_work = 300.0;
-      solver.exact_calm_factor = 30.0;
+      solver.exact_work = 100.0;
+      solver.exact_calm_factor = 90.0;
       solver.longest_sub_step = 1.0;
       options.landing_bodies = options.midpoint_bodies = 0;
       break;
@@ -27,6 +32,7 @@ void set_accuracy(Options& options, Accuracy accuracy) {
       options.landing_bodies = Options{}.landing_bodies;
       options.midpoint_bodies = Options{}.midpoint_bodies;
       options.midpoint_turn = Options{}.midpoint_turn;
+      options.crowd_turning = Options{}.crowd_turning;
       break;
     case Accuracy::exact:
       solver.max_sweeps = 1000;
@@ -37,6 +43,7 @@ void set_accuracy(Options& options, Accuracy accuracy) {
       options.landing_bodies = Options{}.landing_bodies;
       options.midpoint_bodies = Options{}.midpoint_bodies;
       options.midpoint_turn = 0.0025;
+      options.crowd_turning = kMostTurning;
       break;
   }
 }
@@ -68,6 +75,7 @@ std::string check_options(const Options& options) {
       {"landing bodies", static_cast<double>(options.landing_bodies), 0.0, 1e6},
       {"midpoint bodies", static_cast<double>(options.midpoint_bodies), 0.0, 1e6},
       {"midpoint turn", options.midpoint_turn, 1e-4, 10.0},
+      {"crowd turning", options.crowd_turning, 0.0, kMostTurning},
       {"max cuts", static_cast<double>(options.max_cuts), 0.0, 1000.0},
       {"taut parts", static_cast<double>(options.taut_parts), 1.0, 1000.0},
       {"joint passes", static_cast<double>(options.joint_passes), 1.0, 1000.0},

@@ -53,6 +53,7 @@ Manifold collide_cold(const Shape& a, const Pose& X_WA, const Shape& b, const Po
 }
 
 bool same_bits(const Vec3& u, const Vec3& v) {
+  // NOLINTNEXTLINE(bugprone-suspicious-memory-comparison): the bits are meant
   return std::memcmp(u.data(), v.data(), sizeof(double) * 3) == 0;
 }
 

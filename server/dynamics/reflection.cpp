@@ -10,6 +10,7 @@
 
 #include "dynamics/alm_newton.h"
 #include "dynamics/best_impulses.h"
+#include "dynamics/cone_newton.h"
 #include "dynamics/interior_point.h"
 #include "dynamics/linkage.h"
 #include "dynamics/point_impact.h"
@@ -21,9 +22,10 @@ namespace {
 /// Approach [m/s] relative to the speeds involved below which a contact counts as at rest: rounding without friction,
 /// the accuracy of the impulses with it.
 constexpr double kAtRest = 1e-13, kAtRestWithFriction = 1e-10;
-/// More contacts than this at once are left to the interior point method.
+/// More contacts than this at once are no longer solved by active sets.
 constexpr std::size_t kDense = 64;
 constexpr int kFrictionSweeps = 100;
+constexpr std::uint32_t kNowhere = UINT32_MAX;
 /// Of single contacts, hardest first, at the bound of the passes. Points of one box need some dozens.
 constexpr int kMostStops = 1000;
 
@@ -69,7 +71,7 @@ class Pass {
     if (frictionless_ && violated_.size() <= kDense) {
       compress_frictionless();
     } else {
-      compress_by_interior_point();
+      compress_with_friction();
     }
   }
 
@@ -202,38 +204,55 @@ class Pass {
     return p;
   }
 
-  void compress_by_interior_point() {
+  /// The violated contacts, all joints, and the bodies that they act on, in an instant without forces.
+  ContactProblem make_part() const {
     ContactProblem part;
     part.h = 1.0;
-    part.bodies = problem_.bodies;
-    double speed = 0.0;
+    std::vector<std::uint32_t> places(problem_.bodies.size(), kNowhere);
+    const auto place = [&](std::uint32_t body) {
+      if (places[body] == kNowhere) {
+        places[body] = static_cast<std::uint32_t>(part.bodies.size());
+        SolverBody& placed = part.bodies.emplace_back(problem_.bodies[body]);
+        placed.v0 = placed.v;
+        placed.w0 = placed.w;
+      }
+      return places[body];
+    };
     for (std::size_t k = 0; k < violated_.size(); ++k) {
-      PointContact c = contact(k);
+      PointContact& c = part.contacts.emplace_back(contact(k));
+      c.a = place(c.a);
+      c.b = place(c.b);
       c.separation = 0.0;
       c.lambda.setZero();
-      part.contacts.push_back(c);
-      speed = std::max(speed, std::sqrt(u_before_[k].squaredNorm()));
     }
-    for (ScalarRow row : problem_.rows) {
-      if (!row.is_two_sided()) continue;
+    for (const ScalarRow& joint : problem_.rows) {
+      if (!joint.is_two_sided()) continue;
+      ScalarRow& row = part.rows.emplace_back(joint);
+      row.a = place(row.a);
+      row.b = place(row.b);
       row.bound = row.lambda = 0.0;
-      part.rows.push_back(row);
-    }
-    for (SolverBody& body : part.bodies) {
-      body.v0 = body.v;
-      body.w0 = body.w;
     }
     prepare(part, {.slop = 0.0, .push_fraction = 0.0, .push_speed = 0.0});
+    return part;
+  }
+
+  /// Newton's methods end in a few steps, hardly ever not; then the interior point method is next.
+  void compress_with_friction() {
+    constexpr int kNewtonSteps = 20, kConeSteps = 10, kSweeps = 100;
+    double speed = 0.0;
+    for (const Vec3& u : u_before_) speed = std::max(speed, std::sqrt(u.squaredNorm()));
     const double wanted = 0.1 * kAtRestWithFriction * speed;
+    ContactProblem part = make_part();
     BestImpulses best(part);
     VelocitySystem system(part, VelocitySystem::find_pattern(part));
-    run_interior_point(part, system, wanted, best);
-    constexpr int kNewtonSteps = 10;
+    run_alm_newton(part, system, wanted, kNewtonSteps, best);
+    if (best.residual() > wanted) run_cone_newton(part, system, wanted, kConeSteps, best);
+    if (best.residual() > wanted) run_interior_point(part, system, wanted, best);
     if (best.residual() > wanted) run_alm_newton(part, system, wanted, kNewtonSteps, best);
     best.restore();
     if (best.residual() > wanted) {
       SolverSettings settings;
-      settings.max_sweeps = 100;
+      settings.max_sweeps = kSweeps;
       settings.tolerance = wanted;
       solve_pgs(part, settings);
       best.offer();

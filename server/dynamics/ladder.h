@@ -46,6 +46,7 @@ class Ladder {
 
   double residual() const { return best_.residual(); }
   double wanted() const { return wanted_; }
+  int movable() const { return movable_; }  ///< Bodies.
 
  private:
   bool is_plausible() const;
@@ -64,7 +65,8 @@ class Ladder {
   std::optional<VelocitySystem> system_;
 };
 
-/// Climbs on until the problem is solved to rounding; solver_exact.cpp.
-SolverReport finish_exactly(Ladder& ladder, const SolverSettings& settings);
+/// Climbs on until the problem is solved to rounding; solver_exact.cpp. Not `thorough`: what Newton's method does not end
+/// near the solution of the interior point (residuals of 1e-4 m/s at most) is left at that.
+SolverReport finish_exactly(Ladder& ladder, const SolverSettings& settings, bool thorough = true);
 
 }  // namespace tumble

@@ -16,17 +16,17 @@ constexpr double kFair = 1e-6;
 
 }  // namespace
 
-SolverReport finish_exactly(Ladder& ladder, const SolverSettings& settings) {
+SolverReport finish_exactly(Ladder& ladder, const SolverSettings& settings, bool thorough) {
   if (!ladder.solved() && ladder.is_small()) ladder.sweep(settings.max_sweeps);
   if (!ladder.solved()) ladder.newton(kWarmSteps);
   if (!ladder.solved()) {
     const bool near = ladder.interior_point(kNearEnough);
     ladder.newton(kPolishSteps);
-    if (near && !ladder.solved()) {
+    if (near && thorough && !ladder.solved()) {
       ladder.cone_newton(kConeSteps);
       ladder.newton(kPolishSteps);
     }
-    if (near && ladder.residual() > kFair && !ladder.solved()) {  // loads of 1e6 times a contact's own mass
+    if (near && thorough && ladder.residual() > kFair && !ladder.solved()) {  // loads of 1e6 times a contact's own mass
       ladder.interior_point(ladder.wanted());
       ladder.newton(kPolishSteps);
     }

@@ -26,7 +26,8 @@ SolverReport finish_exactly(Ladder& ladder, const SolverSettings& settings, bool
       ladder.cone_newton(kConeSteps);
       ladder.newton(kPolishSteps);
     }
-    if (near && thorough && ladder.residual() > kFair && !ladder.solved()) {  // loads of 1e6 times a contact's own mass
+    // Loads of 1e6 times a contact's own mass.
+    if (near && thorough && ladder.residual() > kFair && !ladder.solved()) {
       ladder.interior_point(ladder.wanted());
       ladder.newton(kPolishSteps);
     }

@@ -12,7 +12,7 @@ namespace {
 using namespace test;
 
 /// A layer of n x n tumbling boxes far apart, thrown alike.
-World layer(int n, Options options = {}) {
+World layer(int n, const Options& options = {}) {
   World world(options);
   for (int i = 0; i < n * n; ++i) {
     BodyDefinition box =

@@ -12,8 +12,8 @@ namespace {
 constexpr double kExpected = 10.0;
 /// As many times more work are heavy loads worth: a wall of 45 cubes under 200 times their mass.
 constexpr double kMostForLoads = 18.0;
-/// Bodies. In larger islands on the move the last digits of what Newton does not solve cost more than all before them, and
-/// serve nobody.
+/// Bodies. In larger islands of equals on the move the last digits of what Newton does not solve cost more than all before
+/// them, and serve nobody.
 constexpr int kFew = 2;
 
 }  // namespace
@@ -21,15 +21,16 @@ constexpr int kFew = 2;
 SolverReport solve_automatic(ContactProblem& problem, const SolverSettings& settings) {
   Ladder ladder(problem, settings);
   const bool calm = ladder.start_speed() < settings.exact_calm_speed;
+  const double loads = std::min(ladder.mass_ratio(), kMostForLoads);
   if (!ladder.solved()) {
-    const double times = calm ? settings.exact_calm_factor : std::min(ladder.mass_ratio(), kMostForLoads);
+    const double times = calm ? settings.exact_calm_factor : loads;
     const double limit = settings.exact_work * times;
     if (!ladder.fits(static_cast<std::uint64_t>(limit)) || kExpected * ladder.work() > settings.work_left) {
       ladder.leave();
       return solve_soft_step(problem, settings);
     }
   }
-  return finish_exactly(ladder, settings, calm || ladder.movable() <= kFew);
+  return finish_exactly(ladder, settings, calm || loads == kMostForLoads || ladder.movable() <= kFew);
 }
 
 }  // namespace tumble

@@ -54,8 +54,8 @@ struct Options {
   /// [rad] a body turns at most in a part of such a step; errors go with its square, cost with its inverse.
   double midpoint_turn = 0.05;
   /// [rad/s] Slides, landings and midpoints of islands of two movable bodies and more: only while nothing in them turns
-  /// faster. What tumbles in a crowd strikes somebody soon, and then again: a heap of 125 boxes and balls that is dropped
-  /// took three times as long, and its bodies dipped into each other as much.
+  /// faster. What tumbles in a crowd strikes somebody soon, and then again: a heap that is dropped would spend most of its
+  /// time on them, and its bodies dip into each other as much (./run bench error: heap).
   double crowd_turning = 3.0;
   /// Most parts into which the step of an island is cut whose joints or ropes pull so hard that what they hold swings by more
   /// than a radian in a step; uncut it would gain energy without bound. 1: never.

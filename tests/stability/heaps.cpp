@@ -80,17 +80,17 @@ void nothing_lost(Trial& trial) {
 std::vector<Case> heap_cases() {
   const auto in_bin = [](bool mixed) { return [mixed](Trial& trial) { heap_in_bin(trial, mixed); }; };
   return {
-      {"heap_boxes", "A heap of dropped boxes: at rest, penetration <= 1 mm, no creep in 10 min", nobody(),
-       heap_of_boxes, false, true},
+      {"heap_boxes", "A heap of dropped boxes: at rest, penetration <= 1 mm, no creep in 10 min",
+       by_default(), heap_of_boxes, false, true},
       {"heap_mixed",
        "The pile of 1000 mixed shapes: at rest, penetration <= 1 mm, no creep in 10 min",
        {},
        heap_of_all,
        false,
        true},
-      {"bin_boxes", "Boxes dropped into a bin: at rest, penetration <= 1 mm, no creep", nobody(),
+      {"bin_boxes", "Boxes dropped into a bin: at rest, penetration <= 1 mm, no creep", precise(),
        in_bin(false), false, true},
-      {"bin_mixed", "Mixed shapes dropped into a bin: at rest, penetration <= 1 mm, no creep", nobody(),
+      {"bin_mixed", "Mixed shapes dropped into a bin: at rest, penetration <= 1 mm, no creep", precise(),
        in_bin(true), false, true},
       {"heap_kept", "The pile of 1000 mixed shapes loses nobody through the ground", sturdy(1.0 / 240.0),
        nothing_lost, false, true},

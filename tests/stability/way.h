@@ -36,7 +36,11 @@ struct Claimants {
 inline Claimants precise(double longest_step = 0.1) {
   return {{Solver::automatic, Solver::exact}, longest_step, Accuracy::balanced};
 }
-/// Those and the sub-steps, which large islands get.
+/// What a world does as it comes.
+inline Claimants by_default(double longest_step = 0.1) {
+  return {{Solver::automatic}, longest_step, Accuracy::balanced};
+}
+/// The precise ones and the sub-steps, which large islands get.
 inline Claimants sturdy(double longest_step = 0.1) {
   return {{Solver::automatic, Solver::exact, Solver::soft_step}, longest_step};
 }

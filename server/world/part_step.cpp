@@ -25,8 +25,8 @@ void add_held_row(ContactProblem& problem, const PointContact& c, const Vec3& n)
 
 bool World::may_be_cut(const StepContext& step, int most_bodies) const {
   if (step.ways_only || scratch_.problem_movable > static_cast<std::uint32_t>(most_bodies)) return false;
-  if (scratch_.problem_movable > 1 && fastest_turning() > options_.crowd_turning) return false;
   if (!scratch_.problem.rows.empty() || !scratch_.problem.turnings.empty()) return false;
+  if (scratch_.problem_movable > 1 && fastest_turning() > options_.crowd_turning) return false;
   // Driven partners stand at the start of the whole step.
   return std::none_of(scratch_.problem_slot.begin() + scratch_.problem_movable, scratch_.problem_slot.end(),
                       [this](std::uint32_t slot) { return slot != kWorld && takes_part(slot); });

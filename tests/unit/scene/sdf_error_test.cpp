@@ -95,12 +95,10 @@ TEST(SdfError, Geometry) {
   check(
       {{in_geometry("<polyline/>"),
         "s.sdf:6: <polyline>: this geometry is not supported: use sphere, box, capsule, cylinder, cone, "
-        "ellipsoid, "
-        "plane, mesh, heightmap or tumble:convex_hull"},
+        "ellipsoid, plane, mesh, heightmap or tumble:convex_hull"},
        {in_geometry(""),
         "s.sdf:5: <geometry>: needs one of sphere, box, capsule, cylinder, cone, ellipsoid, plane, mesh, "
-        "heightmap, "
-        "tumble:convex_hull"},
+        "heightmap, tumble:convex_hull"},
        {in_geometry("<cylinder><radius>1</radius></cylinder>"), "s.sdf:6: <cylinder>: needs a <length>"},
        {in_geometry("<cone><radius>-1</radius><length>1</length></cone>"),
         "s.sdf:6: <radius>: must be > 0 (-1)"},

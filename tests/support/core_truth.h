@@ -1,7 +1,8 @@
 // Ground truth for shapes that are a polytope grown by a radius (half-space, sphere, capsule, box, hull): an exhaustive
 // search over all features in 80-bit arithmetic. Apart, the closest pair of features; overlapping, the axis of least
 // depth among all face normals and all crossings of edges. It checks itself: a closest pair must separate by its own
-// distance (primal = dual), and `brute` leaves out the one shortcut that the search of axes takes.
+// distance (primal = dual), and `brute` tries edges that cannot cross, too. The other shortcuts are proofs: a lower bound of
+// a distance or an upper bound of a separation rules out what they leave out.
 #pragma once
 
 #include <algorithm>
@@ -169,10 +170,20 @@ class CoreTruth {
     return of_pair ? std::min<Real>(1, best_ / size) : axis.sine;
   }
 
-  Real core_separation_along(const Vec3L& n) const { return -b_.highest(-n) - a_.highest(n); }
+  /// Every vertex can only lower it: below `least` it need not be known to the end.
+  Real core_separation_along(const Vec3L& n, Real least = -kEndless) const {
+    if (a_.half_space || b_.half_space) return -b_.highest(-n) - a_.highest(n);
+    Real top = -kEndless, bottom = kEndless;
+    for (std::size_t i = 0; i < std::max(a_.vertices.size(), b_.vertices.size()); ++i) {
+      if (i < a_.vertices.size()) top = std::max(top, n.dot(a_.vertices[i]));
+      if (i < b_.vertices.size()) bottom = std::min(bottom, n.dot(b_.vertices[i]));
+      if (bottom - top < least) break;
+    }
+    return bottom - top;
+  }
 
   void offer_axis(const Vec3L& n, Real sine) {
-    const Real separation = core_separation_along(n);
+    const Real separation = core_separation_along(n, best_ - kKept);
     best_ = std::max(best_, separation);
     if (separation >= best_ - kKept) axes_.push_back({n, separation, sine});
   }
@@ -231,23 +242,62 @@ class CoreTruth {
     }
   };
 
+  /// How far each feature reaches along a direction.
+  struct Reaches {
+    std::vector<Real> vertices, edges, faces;
+    Reaches(const Core& core, const Vec3L& n) {
+      for (const Vec3L& v : core.vertices) vertices.push_back(n.dot(v));
+      for (const Core::Edge& e : core.edges) edges.push_back(std::max(n.dot(e.tail), n.dot(e.head)));
+      for (const Core::Face& f : core.faces) {
+        faces.push_back(-kEndless);
+        for (const Vec3L& v : f.loop) faces.back() = std::max(faces.back(), n.dot(v));
+      }
+    }
+  };
+
   void find_distance() {
     Pair best;
-    for (const Vec3L& v : a_.vertices) {
-      for (const Vec3L& w : b_.vertices) best.offer(v, w);
-      for (const Core::Edge& e : b_.edges) best.offer(v, nearest_on(e, v));
-      for (const Core::Face& f : b_.faces) offer_face(f, v, [&](const Vec3L& foot) { best.offer(v, foot); });
+    // Features need no look if they lie too far apart along the best axis already.
+    const auto at_best = [&](const Axis& axis) { return axis.separation == best_; };
+    const auto axis = std::find_if(axes_.begin(), axes_.end(), at_best);
+    const Vec3L n = axis == axes_.end() ? Vec3L(Vec3L::Zero()) : axis->n;
+    const Reaches of_a(a_, n), of_b(b_, -n);
+    const auto may_be_closest = [&](Real reach_a, Real reach_b) {
+      return -reach_b - reach_a <= best.distance;
+    };
+    for (std::size_t i = 0; i < a_.vertices.size(); ++i) {
+      const Vec3L& v = a_.vertices[i];
+      const Real reach = of_a.vertices[i];
+      for (std::size_t j = 0; j < b_.vertices.size(); ++j) {
+        if (may_be_closest(reach, of_b.vertices[j])) best.offer(v, b_.vertices[j]);
+      }
+      for (std::size_t j = 0; j < b_.edges.size(); ++j) {
+        if (may_be_closest(reach, of_b.edges[j])) best.offer(v, nearest_on(b_.edges[j], v));
+      }
+      for (std::size_t j = 0; j < b_.faces.size(); ++j) {
+        if (!may_be_closest(reach, of_b.faces[j])) continue;
+        offer_face(b_.faces[j], v, [&](const Vec3L& foot) { best.offer(v, foot); });
+      }
     }
-    for (const Vec3L& w : b_.vertices) {
-      for (const Core::Edge& e : a_.edges) best.offer(nearest_on(e, w), w);
-      for (const Core::Face& f : a_.faces) offer_face(f, w, [&](const Vec3L& foot) { best.offer(foot, w); });
+    for (std::size_t j = 0; j < b_.vertices.size(); ++j) {
+      const Vec3L& w = b_.vertices[j];
+      const Real reach = of_b.vertices[j];
+      for (std::size_t i = 0; i < a_.edges.size(); ++i) {
+        if (may_be_closest(of_a.edges[i], reach)) best.offer(nearest_on(a_.edges[i], w), w);
+      }
+      for (std::size_t i = 0; i < a_.faces.size(); ++i) {
+        if (!may_be_closest(of_a.faces[i], reach)) continue;
+        offer_face(a_.faces[i], w, [&](const Vec3L& foot) { best.offer(foot, w); });
+      }
     }
-    for (const Core::Edge& e : a_.edges) {
-      for (const Core::Edge& f : b_.edges) offer_edges(e, f, best);
+    for (std::size_t i = 0; i < a_.edges.size(); ++i) {
+      for (std::size_t j = 0; j < b_.edges.size(); ++j) {
+        if (may_be_closest(of_a.edges[i], of_b.edges[j])) offer_edges(a_.edges[i], b_.edges[j], best);
+      }
     }
     apart_ = true;
     // Axes that are equal but for rounding are as good.
-    std::erase_if(axes_, [&](const Axis& axis) { return axis.separation < best.distance - kKept; });
+    std::erase_if(axes_, [&](const Axis& a) { return a.separation < best.distance - kKept; });
     best_ = best.distance;
     const Vec3L d = best.p_b - best.p_a;
     axes_.push_back({best.distance > 0 ? Vec3L(d / best.distance) : Vec3L(Vec3L::UnitZ()), best_, 1});
@@ -284,9 +334,10 @@ class CoreTruth {
     return (p - nearest_on(core.edges[0], p)).norm();
   }
 
+  static constexpr Real kEndless = std::numeric_limits<Real>::infinity();
   static constexpr Real kKept = 1e-9L;  // axes this near to the best may be ties [m]
   Core a_, b_;
-  Real best_ = -std::numeric_limits<Real>::infinity();
+  Real best_ = -kEndless;
   bool apart_ = false;
   std::vector<Axis> axes_;
 };

@@ -106,6 +106,21 @@ struct CirclesOf {
   }
 };
 
+/// Cosine and sine of an angle that goes on in equal steps, by additions of angles: the library's take longer than all
+/// else here.
+struct Turning {
+  long double cos = 1, sin = 0;
+  explicit Turning(long double step) : step_cos_(std::cos(step)), step_sin_(std::sin(step)) {}
+  void advance() {
+    const long double c = cos * step_cos_ - sin * step_sin_;
+    sin = sin * step_cos_ + cos * step_sin_;
+    cos = c;
+  }
+
+ private:
+  long double step_cos_, step_sin_;
+};
+
 class DirectionReference {
  public:
   struct Best {
@@ -170,10 +185,11 @@ class DirectionReference {
   Best search(int directions, std::size_t seeds) const {
     std::vector<Best> candidates;
     const auto add = [&](const Vec3L& n) { candidates.push_back({separation(n), n}); };
-    for (int i = 0; i < directions; ++i) {  // Fibonacci's spiral
-      const long double z = 1.0L - (2.0L * i + 1.0L) / directions, turn = 2.39996322972865332L * i;
+    Turning spiral(2.39996322972865332L);
+    for (int i = 0; i < directions; ++i, spiral.advance()) {  // Fibonacci's spiral
+      const long double z = 1.0L - (2.0L * i + 1.0L) / directions;
       const long double across = std::sqrt(1.0L - z * z);
-      add({across * std::cos(turn), across * std::sin(turn), z});
+      add({across * spiral.cos, across * spiral.sin, z});
     }
     for (int k = 0; k < 3; ++k) {
       for (const long double side : {-1.0L, 1.0L}) {
@@ -278,47 +294,67 @@ class DirectionReference {
     return n;
   }
 
-  /// Thirds between the neighbours of each sample that is a local maximum.
+  /// The golden section between the neighbours of each sample that is a local maximum.
   Best search_circle(const CircleL& circle) const {
     constexpr int kSamples = 180;
     constexpr long double kStep = 6.283185307179586477L / kSamples;
     const Vec3L u = circle.axis.unitOrthogonal(), v = circle.axis.cross(u);
     const long double across = std::sqrt(1.0L - circle.height * circle.height);
-    const auto at = [&](long double angle) -> Best {
-      const Vec3L n = circle.height * circle.axis + across * (std::cos(angle) * u + std::sin(angle) * v);
+    const auto at = [&](long double cos, long double sin) -> Best {
+      const Vec3L n = circle.height * circle.axis + across * (cos * u + sin * v);
       return {separation(n), n};
     };
+    std::vector<Turning> turned;
     std::vector<long double> samples;
-    for (int i = 0; i < kSamples; ++i) samples.push_back(at(kStep * i).separation);
+    Turning turning(kStep);
+    for (int i = 0; i < kSamples; ++i, turning.advance()) {
+      turned.push_back(turning);
+      samples.push_back(at(turning.cos, turning.sin).separation);
+    }
     Best best;
     for (int i = 0; i < kSamples; ++i) {
       const auto sample = [&](int k) { return samples[static_cast<std::size_t>((k + kSamples) % kSamples)]; };
       if (sample(i) < sample(i - 1) || sample(i) < sample(i + 1)) continue;
-      long double low = kStep * (i - 1), high = kStep * (i + 1);
-      while (high - low > 1e-12L) {
-        const long double third = (high - low) / 3.0L;
-        if (at(low + third).separation < at(high - third).separation) {
-          low += third;
-        } else {
-          high -= third;
-        }
-      }
-      const Best refined = at(0.5L * (low + high));
+      const Turning& here = turned[static_cast<std::size_t>(i)];
+      const Best refined = refine(-kStep, kStep, [&](long double angle) {
+        const long double c = std::cos(angle), s = std::sin(angle);
+        return at(here.cos * c - here.sin * s, here.sin * c + here.cos * s);
+      });
       if (refined.separation > best.separation) best = refined;
     }
     return best;
+  }
+  template <typename At>
+  static Best refine(long double low, long double high, const At& at) {
+    constexpr long double kGolden = 0.6180339887498948482L;
+    long double p = high - kGolden * (high - low), q = low + kGolden * (high - low);
+    Best at_p = at(p), at_q = at(q);
+    while (high - low > 1e-12L) {
+      if (at_p.separation < at_q.separation) {
+        low = p, p = q, at_p = at_q;
+        q = low + kGolden * (high - low), at_q = at(q);
+      } else {
+        high = q, q = p, at_q = at_p;
+        p = high - kGolden * (high - low), at_p = at(p);
+      }
+    }
+    return at_p.separation < at_q.separation ? at_q : at_p;
   }
 
   static constexpr int kPatternTurns = 400;  // on a kink it would zigzag for ever
 
   Best improve(Best best) const {
     long double step = 0.05L;
-    for (int turn = 0; step > 1e-10L && turn < kPatternTurns; ++turn) {
+    static const Turning kTurn(0.37L), kEighth(0.7853981633974483L);
+    Turning first = kTurn;
+    for (int turn = 0; step > 1e-10L && turn < kPatternTurns; ++turn, first.advance()) {
       const Vec3L u = best.normal_A.unitOrthogonal(), v = best.normal_A.cross(u);
       bool better = false;
-      for (int k = 0; k < 8 && !better; ++k) {
-        const long double angle = 0.7853981633974483L * k + 0.37L * turn;
-        const Vec3L n = (best.normal_A + step * (std::cos(angle) * u + std::sin(angle) * v)).normalized();
+      Turning around = kEighth;
+      for (int k = 0; k < 8 && !better; ++k, around.advance()) {
+        const long double c = around.cos * first.cos - around.sin * first.sin;
+        const long double s = around.sin * first.cos + around.cos * first.sin;
+        const Vec3L n = (best.normal_A + step * (c * u + s * v)).normalized();
         const long double here = separation(n);
         if (here > best.separation) best = {here, n}, better = true;
       }

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "math/four.h"
+
 namespace tumble {
 namespace {
 
@@ -22,6 +24,16 @@ Vec3 principal_velocity(const MassProperties& mass, const Motion& start) {
   Vec3 w_P;
   for (int i = 0; i < 3; ++i) w_P[i] = mass.I[i] * w < L ? by_w[i] : mass.inv_I[i] * L_P[i];
   return w_P;
+}
+
+/// p q with its four parts side by side: Eigen's product, to the bit.
+Quat times(const Quat& p, const Quat& q) {
+  const Four b{q.x(), q.y(), q.z(), q.w()}, a{p.x(), p.y(), p.z(), p.w()};
+  constexpr Four kSigns{1.0, 1.0, 1.0, -1.0};
+  const Four c = p.w() * b + kSigns * shuffled<0, 1, 2, 0>(a) * shuffled<3, 3, 3, 0>(b) +
+                 kSigns * shuffled<1, 2, 0, 1>(a) * shuffled<2, 0, 1, 1>(b) -
+                 shuffled<2, 0, 1, 2>(a) * shuffled<1, 2, 0, 2>(b);
+  return Quat(c[3], c[0], c[1], c[2]);
 }
 
 }  // namespace
@@ -104,8 +116,8 @@ FreeRotation::State FreeRotation::at(double t) const {
   }
   // w is formed along the sorted axes and then turned: a thin axis keeps its own digits.
   const Tumbling::State now = tumbling_.at(t);
-  const Quat q_WS = start_ * now.f;
-  return {q_WS * q_SB_, q_WS * Vec3(L_over_I_.cwiseProduct(now.L_hat))};
+  const Quat q_WS = times(start_, now.f);
+  return {times(q_WS, q_SB_), q_WS * Vec3(L_over_I_.cwiseProduct(now.L_hat))};
 }
 
 double FreeRotation::phase_rate() const {

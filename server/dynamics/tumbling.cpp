@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "math/elliptic.h"
-#include "math/rotation.h"
+#include "math/four.h"
 
 namespace tumble {
 namespace {
@@ -109,44 +109,35 @@ void Tumbling::set_circular(const Invariants& c, const Vec3& l) {
     const double alternating = n % 2 == 0 ? 1.0 : -1.0;
     rest += alternating * e[n];
     if (n >= terms_) continue;
-    alpha_[n] = alternating * l[1] * ratio * e[n];
-    beta_[n] = l[0] * kappa * ratio * e[n];
-    gamma_[n] = (n == 0 ? 1.0 : 2.0) * l[2] * kappa * g[n];
+    const double theta1 = alternating * l[1] * ratio * e[n], theta2 = l[0] * kappa * ratio * e[n];
+    series_[n] = {(n == 0 ? 1.0 : 2.0) * l[2] * kappa * g[n], 0.0, theta2, theta1};
     re_[n] = rest;
   }
   double falling = 1.0, rising = 1.0;  // W^n, W^-n
   for (int n = 1; n < terms_; ++n) {
     falling *= W_;
     rising /= W_;
-    im_[n] = re_[n] * (rising - falling);
+    series_[n][1] = re_[n] * (rising - falling);
     re_[n] *= rising + falling;
   }
 }
 
-Tumbling::Thetas Tumbling::circular(double z) const {
-  const auto [s, c] = sincos(z);
+Tumbling::Thetas Tumbling::circular(double z, double precessed) const {
+  const auto [at_z, turned] = sincos(z, precessed);
+  const auto [s, c] = at_z;
   const double c2 = (c - s) * (c + s), s2 = 2.0 * s * c;
-  Thetas theta{alpha_[0] * s, beta_[0] * c, gamma_[0], 0.0, 0.0, 0.0};
-  double re = re_[0], im = 0.0;
-  double cos_even = 1.0, sin_even = 0.0, cos_odd = c, sin_odd = s;
-  const auto turn = [&](double& cosine, double& sine) {
-    const double turned = cosine * c2 - sine * s2;
-    sine = sine * c2 + cosine * s2;
-    cosine = turned;
-  };
+  const Four cos_2z = four(c2), sin_2z{-s2, s2, -s2, s2};
+  Four phase{1.0, 0.0, c, s};  // cosine and sine of 2nz, and of (2n+1)z
+  Four sum = four(series_[0]) * phase;
+  double re = re_[0];
   for (int n = 1; n < terms_; ++n) {
-    turn(cos_even, sin_even);
-    turn(cos_odd, sin_odd);
-    theta.T1 += alpha_[n] * sin_odd;
-    theta.T2 += beta_[n] * cos_odd;
-    theta.T3 += gamma_[n] * cos_even;
-    re += re_[n] * cos_even;
-    im += im_[n] * sin_even;
+    phase = phase * cos_2z + shuffled<1, 0, 3, 2>(phase) * sin_2z;
+    sum += four(series_[n]) * phase;
+    re += re_[n] * phase[0];
   }
+  const double im = sum[1];
   const double factor_re = loss_ + 2.0 * W_ * s * s, factor_im = 2.0 * W_ * s * c;
-  theta.re = factor_re * re - factor_im * im;
-  theta.im = factor_re * im + factor_im * re;
-  return theta;
+  return {sum[3], sum[2], sum[0], factor_re * re - factor_im * im, factor_re * im + factor_im * re, turned};
 }
 
 /// With the nome nu_1 < e^-pi of 1 - m, after Jacobi's imaginary transform: hyperbolic functions of z K/K' by powers of
@@ -167,11 +158,9 @@ void Tumbling::set_hyperbolic(const Invariants& c, const Vec3& l) {
     if (n >= 2 && lower < kNothing) break;
     terms_ = n + 1;
     const double square = lower * power;  // nu_1^(n^2)
-    alpha_[n] = alternating * l[1] * root * square;
-    beta_[n] = alternating * l[0] * root * f * lower;
-    gamma_[n] = l[2] * f * lower;
+    const double theta1 = alternating * l[1] * root * square, theta2 = alternating * l[0] * root * f * lower;
+    series_[n] = {l[2] * f * lower, alternating * square * cosine, theta2, theta1};
     re_[n] = alternating * square * sine;
-    im_[n] = alternating * square * cosine;
     lower = square * power;
     power *= n1;
     alternating = -alternating;
@@ -181,28 +170,24 @@ void Tumbling::set_hyperbolic(const Invariants& c, const Vec3& l) {
   }
 }
 
-Tumbling::Thetas Tumbling::hyperbolic(double z) const {
+Tumbling::Thetas Tumbling::hyperbolic(double z, double precessed) const {
   // Beyond, z itself is rounded to 1e-10 or worse, as in sincos.
   if (!(std::abs(z) < 1.6e6)) z = std::remainder(z, 2.0 * kPi);
   const double k = std::nearbyint(z * (1.0 / kPi));
   const double z_rest = (z - k * kPiHi) - k * kPiLo;
   const double E = exp_decay(-std::abs(z_rest) * K_ratio_);
   const double E2 = E * E, E4 = E2 * E2, p = nome1_ / E2;
-  double T1 = alpha_[0] * (1.0 - E2), T2 = beta_[0], T3 = gamma_[0];
-  double re = re_[0] * (1.0 + E2), im = im_[0] * (1.0 - E2);
+  Four sum = four(series_[0]) * Four{1.0, 1.0 - E2, 1.0, 1.0 - E2};
+  double re = re_[0] * (1.0 + E2);
   double p_n = 1.0, E_4n = 1.0;
   for (int n = 1; n < terms_; ++n) {
     p_n *= p;
     E_4n *= E4;
     const double E_odd = E_4n * E2;
-    T1 += alpha_[n] * p_n * (1.0 - E_odd);
-    T2 += beta_[n] * p_n * (1.0 + E_4n);
-    T3 += gamma_[n] * p_n * (1.0 + E_4n);
+    sum += four(series_[n]) * p_n * (1.0 + Four{E_4n, -E_odd, E_4n, -E_odd});
     re += re_[n] * p_n * (1.0 + E_odd);
-    im += im_[n] * p_n * (1.0 - E_odd);
   }
-  T2 *= E;
-  T3 *= E;
+  double T1 = sum[3], T2 = sum[2] * E, im = sum[1];
   if (z_rest < 0.0) {
     T1 = -T1;
     im = -im;
@@ -211,36 +196,35 @@ Tumbling::Thetas Tumbling::hyperbolic(double z) const {
     T1 = -T1;
     T2 = -T2;
   }
-  return {T1, T2, T3, re, im, -0.5 * z_rest * shift_ratio_};
+  return {T1, T2, sum[0] * E, re, im, sincos(precessed - 0.5 * z_rest * shift_ratio_)};
 }
 
 Tumbling::State Tumbling::at(double t) const {
-  const double z = z0_ + z_rate_ * t;
-  const Thetas theta = circular_ ? circular(z) : hyperbolic(z);
+  const double z = z0_ + z_rate_ * t, precessed = half_precession_ * t;
+  const Thetas theta = circular_ ? circular(z, precessed) : hyperbolic(z, precessed);
   const double across2 = theta.T1 * theta.T1 + theta.T2 * theta.T2;
-  const double across = std::sqrt(across2), N = 1.0 / std::sqrt(across2 + theta.T3 * theta.T3);
-  const double inv_across = 1.0 / across;
-  const double X = 1.0 / std::sqrt(theta.re * theta.re + theta.im * theta.im);
+  const Four lengths =
+      root(Four{across2, across2 + theta.T3 * theta.T3, theta.re * theta.re + theta.im * theta.im, 1.0});
+  const double L = lengths[1], X = lengths[2], N = 1.0 / L;
   State state;
   state.L_hat = N * Vec3(theta.T2, theta.T1, theta.T3);
 
-  // Half the polar angles of L, then half the precession: no arc tangent. Half the angle of (c, s), c >= 0, is that of
-  // (1 + c, s), whose length sqrt(2 (1 + c)) is taken off at the end.
-  const SinCos polar{N * across, 1.0 + state.L_hat.z()};
-  const double cos_phi = across > 0.0 ? theta.T2 * inv_across : 1.0;
-  const double sin_phi = across > 0.0 ? theta.T1 * inv_across : 0.0;
-  SinCos phi{sin_phi, 1.0 + std::abs(cos_phi)};
-  const SinCos xi{theta.im * X, 1.0 + theta.re * X};
-  const double length = 1.0 / std::sqrt(8.0 * (polar.cos * phi.cos * xi.cos));
+  // Half the polar angles of L, then half the precession: no arc tangent. Half the angle of (a, b) of length r, a >= 0, is
+  // that of (r + a, b), whose length sqrt(2 r (r + a)) is taken off at the end.
+  const bool along_3 = across2 == 0.0;  // then any angle phi will do
+  const double across = along_3 ? 1.0 : lengths[0], cos_phi = along_3 ? 1.0 : theta.T2;
+  const SinCos polar{lengths[0], L + theta.T3}, xi{theta.im, X + theta.re}, h = theta.precessed;
+  SinCos phi{theta.T1, across + std::abs(cos_phi)};
+  // Two roots, as their product may underflow.
+  const double scale = 0.5 / (std::sqrt(2.0 * (L * polar.cos) * (X * xi.cos)) * std::sqrt(across * phi.cos));
   if (cos_phi < 0.0) {
-    const double j = sign(sin_phi);
+    const double j = sign(phi.sin);
     phi = {j * phi.cos, j * phi.sin};
   }
-  const SinCos h = sincos(half_precession_ * t + theta.shift);
   const double c_psi = h.cos * xi.cos - h.sin * xi.sin, s_psi = h.sin * xi.cos + h.cos * xi.sin;
   const double even_c = c_psi * phi.cos, even_s = s_psi * phi.sin;
   const double odd_c = s_psi * phi.cos, odd_s = c_psi * phi.sin;
-  const double along = length * polar.cos, across_f = length * polar.sin;
+  const double along = scale * polar.cos, across_f = scale * polar.sin;
   state.f = Quat(along * (even_c + even_s), across_f * (odd_c + odd_s), across_f * (even_s - even_c),
                  along * (odd_c - odd_s));
   return state;

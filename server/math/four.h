@@ -2,6 +2,9 @@
 // rounded as a double is, so the results are those of four scalars, to the bit, on any processor.
 #pragma once
 
+#include <array>
+#include <cmath>
+
 // Everything here is inlined: how such vectors are passed, which differs between processors, is of no concern.
 #pragma GCC diagnostic ignored "-Wpsabi"
 
@@ -14,6 +17,9 @@ using FourFlags = decltype(Four{} < Four{});
 
 inline Four four(double x) {
   return Four{x, x, x, x};
+}
+inline Four four(const std::array<double, 4>& x) {
+  return Four{x[0], x[1], x[2], x[3]};
 }
 /// The last lane is of no interest.
 inline Four four(double x, double y, double z) {
@@ -29,6 +35,11 @@ inline Four larger(const Four& x, const Four& y) {
 }
 inline Four smaller(const Four& x, const Four& y) {
   return x < y ? x : y;
+}
+inline Four root(const Four& x) {
+  Four y{};
+  for (int i = 0; i < 4; ++i) y[i] = std::sqrt(x[i]);
+  return y;
 }
 /// Lane i is lane i + `by` of x, the first again after the last.
 template <int by>

@@ -8,6 +8,8 @@
 #include <cstdint>
 #include <numbers>
 
+#include "math/four.h"
+
 namespace tumble {
 namespace {
 
@@ -27,14 +29,39 @@ constexpr Pair kSeries[] = {{-1.66666666666666324348e-01, 4.16666666666666019037
                             {-2.50507602534068634195e-08, 2.08757232129817482790e-09},
                             {1.58969099521155010221e-10, -1.13596475577881948265e-11}};
 
-/// For |r| <= pi/4.
-SinCos sincos_reduced(double r) {
-  const double r2 = r * r;
-  Pair p = kSeries[5];
-  for (int i = 4; i >= 0; --i) p = kSeries[i] + r2 * p;
-  const double y = 0.5 * r2;
-  const double w = 1.0 - y;
-  return {r + r * (r2 * p[0]), w + (((1.0 - w) - y) + r2 * r2 * p[1])};
+/// Sine's and cosine's series in lanes that take turns: their coefficients in p.
+template <typename Lanes, typename Repeat>
+Lanes sincos_series(const Lanes& x, const Repeat& repeat) {
+  const Lanes x2 = x * x;
+  return (repeat(kSeries[0]) + x * repeat(kSeries[1])) + x2 * (repeat(kSeries[2]) + x * repeat(kSeries[3])) +
+         (x2 * x2) * (repeat(kSeries[4]) + x * repeat(kSeries[5]));
+}
+
+/// x less the nearest multiple k of pi/2, and k.
+struct Reduced {
+  double r;
+  std::uint64_t quadrant;
+};
+Reduced reduce(double x) {
+  if (!(std::abs(x) < 1.6e6)) {
+    // Here x itself is rounded to 1e-10 or worse. The remainder is exact by IEEE 754, alike in every C library.
+    x = std::remainder(x, 2.0 * std::numbers::pi);
+    if (!std::isfinite(x)) return {x, 0};
+  }
+  const double k = std::nearbyint(x * kTwoOverPi);
+  return {(x - k * kHalfPiHi) - k * kHalfPiLo, static_cast<std::uint64_t>(static_cast<std::int64_t>(k))};
+}
+
+/// From the series' values.
+SinCos finish(const Reduced& x, double sine, double cosine) {
+  const double r = x.r, r2 = r * r, y = 0.5 * r2, w = 1.0 - y;
+  const double s = r + r * (r2 * sine), c = w + (((1.0 - w) - y) + r2 * r2 * cosine);
+  // By quadrant {s, c}, {c, -s}, {-s, -c}, {-c, s}; without branches, which no processor could predict.
+  const auto signed_by = [](double value, std::uint64_t bit) {
+    return std::bit_cast<double>(std::bit_cast<std::uint64_t>(value) ^ (bit & 2) << 62);
+  };
+  const bool odd = x.quadrant & 1;
+  return {signed_by(odd ? c : s, x.quadrant), signed_by(odd ? s : c, x.quadrant + 1)};
 }
 
 /// 1/first!, 1/(first + stride)!, ...
@@ -53,37 +80,38 @@ constexpr auto kExp = inverse_factorials<12>(2, 1);
 constexpr auto kCos = inverse_factorials<7>(2, 2);
 constexpr auto kSinc = inverse_factorials<7>(3, 2);
 
-/// c_0 + x (c_1 + x (c_2 + ...)).
+/// c_0 + c_1 x + c_2 x^2 + ..., by pairs of neighbours (Estrin 1960): half as long a wait as Horner's rule.
 template <std::size_t count>
-double horner(const std::array<double, count>& c, double x) {
-  double sum = c[count - 1];
-  for (std::size_t k = count - 1; k-- > 0;) sum = c[k] + x * sum;
-  return sum;
+double sum_powers(const std::array<double, count>& c, double x) {
+  std::array<double, (count + 1) / 2> pairs;
+  for (std::size_t k = 0; k < count / 2; ++k) pairs[k] = c[2 * k] + x * c[2 * k + 1];
+  if constexpr (count % 2 == 1) pairs[count / 2] = c[count - 1];
+  if constexpr (pairs.size() == 1) {
+    return pairs[0];
+  } else {
+    return sum_powers(pairs, x * x);
+  }
 }
 
 /// e^r - 1 for |r| <= 0.35 by its Taylor series to r^13 (remainder < 5e-18).
 double expm1_reduced(double r) {
-  return r + r * r * horner(kExp, r);
+  return r + r * r * sum_powers(kExp, r);
 }
 
 }  // namespace
 
 SinCos sincos(double x) {
-  if (!(std::abs(x) < 1.6e6)) {
-    // Here x itself is rounded to 1e-10 or worse. The remainder is exact by IEEE 754, alike in every C library.
-    x = std::remainder(x, 2.0 * std::numbers::pi);
-    if (!std::isfinite(x)) return {x, x};
-  }
-  const double k = std::nearbyint(x * kTwoOverPi);
-  const double r = (x - k * kHalfPiHi) - k * kHalfPiLo;
-  const auto [s, c] = sincos_reduced(r);
-  // By quadrant {s, c}, {c, -s}, {-s, -c}, {-c, s}; without branches, which no processor could predict.
-  const auto quadrant = static_cast<std::uint64_t>(static_cast<std::int64_t>(k));
-  const auto signed_by = [](double value, std::uint64_t bit) {
-    return std::bit_cast<double>(std::bit_cast<std::uint64_t>(value) ^ (bit & 2) << 62);
-  };
-  const bool odd = quadrant & 1;
-  return {signed_by(odd ? c : s, quadrant), signed_by(odd ? s : c, quadrant + 1)};
+  const Reduced reduced = reduce(x);
+  const double r2 = reduced.r * reduced.r;
+  const Pair p = sincos_series(Pair{r2, r2}, [](const Pair& c) { return c; });
+  return finish(reduced, p[0], p[1]);
+}
+
+std::array<SinCos, 2> sincos(double x, double y) {
+  const Reduced first = reduce(x), second = reduce(y);
+  const double a = first.r * first.r, b = second.r * second.r;
+  const Four p = sincos_series(Four{a, a, b, b}, [](const Pair& c) { return Four{c[0], c[1], c[0], c[1]}; });
+  return {finish(first, p[0], p[1]), finish(second, p[2], p[3])};
 }
 
 double exp_decay(double x) {
@@ -103,7 +131,7 @@ double mean_decay(double x) {
 
 double mean_loss(double x) {
   assert(x >= 0.0);
-  if (x < 0.34) return horner(kExp, -x);  // e^-x = 1 - x + x^2 (1/2 - x (1/3! - ...))
+  if (x < 0.34) return sum_powers(kExp, -x);  // e^-x = 1 - x + x^2 (1/2 - x (1/3! - ...))
   return (1.0 - mean_decay(x)) / x;
 }
 
@@ -111,8 +139,8 @@ Quat exp_map(const Vec3& r) {
   const double x2 = 0.25 * r.squaredNorm();  // half angle, squared
   if (x2 < 0.04) {
     // Taylor series of cos x and sin x / x: no square root, no division by a tiny angle (remainder < 1e-21).
-    const double c = 1.0 - x2 * horner(kCos, -x2);
-    const Vec3 v = (0.5 - 0.5 * (x2 * horner(kSinc, -x2))) * r;
+    const double c = 1.0 - x2 * sum_powers(kCos, -x2);
+    const Vec3 v = (0.5 - 0.5 * (x2 * sum_powers(kSinc, -x2))) * r;
     return Quat(c, v.x(), v.y(), v.z());
   }
   const double x = std::sqrt(x2);

@@ -3,6 +3,8 @@
 // Reductions and coefficients: fdlibm's minimax polynomials (Sun Microsystems 1993) on a two-part pi/2 and ln 2.
 #pragma once
 
+#include <array>
+
 #include "math/types.h"
 
 namespace tumble {
@@ -14,6 +16,9 @@ struct SinCos {
 /// sin and cos of x [rad]; absolute error <= 1.2e-16 for |x| < 1.6e6, beyond that 4e-17 |x|, which is less than the
 /// rounding of x itself. NaN if x is not finite.
 SinCos sincos(double x);
+
+/// Of both, to the bit as one by one, in little more than the time of one.
+std::array<SinCos, 2> sincos(double x, double y);
 
 /// e^x for x <= 0 (decays), <= 1 ulp; exactly 0 below -708.
 double exp_decay(double x);

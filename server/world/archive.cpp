@@ -188,10 +188,9 @@ void serialize(Archive& archive, FlightLoad& load) {
 template <>
 struct Archived<Tumbling> {
   static void members(auto& archive, Tumbling& tumbling) {
-    auto& [circular, terms, z0, z_rate, half_precession, alpha, beta, gamma, re, im, loss, W, nome1, K_ratio,
-           shift_ratio] = tumbling;
-    archive(circular, terms, z0, z_rate, half_precession, alpha, beta, gamma, re, im, loss, W, nome1, K_ratio,
-            shift_ratio);
+    auto& [circular, terms, z0, z_rate, half_precession, series, re, loss, W, nome1, K_ratio, shift_ratio] =
+        tumbling;
+    archive(circular, terms, z0, z_rate, half_precession, series, re, loss, W, nome1, K_ratio, shift_ratio);
   }
 };
 template <>

@@ -55,15 +55,13 @@ struct BoxFacePlane {
     const double z = d[k] * per_n;
     return {d[k1] - z * n1, d[k2] - z * n2, z};
   }
-  /// The middle between such a point and its foot on the plane.
-  template <typename Point>
-  Vec3 middle(const Point& p) const {
+  /// The middle between such a point and its foot on the plane. Put in its place: what is written coordinate by coordinate
+  /// and then copied as a whole waits for the writing to be over.
+  void put_middle(const Four& p, Vec3& middle) const {
     const double half = 0.5 * p[2];
-    Vec3 middle;
     middle[k] = half * nk + height;
     middle[k1] = half * n1 + p[0];
     middle[k2] = half * n2 + p[1];
-    return middle;
   }
   /// How far p lies outside of a side [m].
   template <std::size_t side, typename Point>
@@ -117,7 +115,7 @@ struct SeenFace {
 
 /// A corner of what is left of the incident face over the reference face.
 struct ClippedCorner {
-  Vec3 p;
+  Four p;
   std::uint32_t name;
   std::uint16_t edge;  ///< That starts here: of the incident box, or kEdgeIds + a side of the reference face.
   std::uint16_t place;  ///< On the tape.
@@ -139,13 +137,10 @@ class FaceClip {
     const std::uint32_t side = up ? 1u << incident.k : 0u, bit1 = 1u << along1, bit2 = 1u << along2;
     const std::uint32_t first = up ? side : side | bit1, second = first ^ bit1;
     const auto& names = kCornerNames[reference_is_a];
-    const auto corner = [&](std::size_t i) {
-      return Vec3(seen.corners[i][0], seen.corners[i][1], seen.corners[i][2]);
-    };
-    loops_[0][0] = {corner(0), names[first], edge_of(along1, first), 0};
-    loops_[0][1] = {corner(1), names[second], edge_of(along2, second), 1};
-    loops_[0][2] = {corner(2), names[second | bit2], edge_of(along1, second), 2};
-    loops_[0][3] = {corner(3), names[first | bit2], edge_of(along2, first), 3};
+    loops_[0][0] = {seen.corners[0], names[first], edge_of(along1, first), 0};
+    loops_[0][1] = {seen.corners[1], names[second], edge_of(along2, second), 1};
+    loops_[0][2] = {seen.corners[2], names[second | bit2], edge_of(along1, second), 2};
+    loops_[0][3] = {seen.corners[3], names[first | bit2], edge_of(along2, first), 3};
   }
 
   template <typename Recorder>
@@ -198,7 +193,7 @@ void FaceClip::cut_side(const SeenFace& seen, Recorder& recorder) {
     recorder.look(corner.place, inside);
     if (inside) to[n++] = corner;
     if (inside != (next_outside <= tolerance_)) {
-      Vec3 p;
+      Four p;
       if (cross_side(corner.p, next.p, outside, next_outside, p)) {
         const auto place = static_cast<std::uint16_t>(recorder.cross(corner.place, next.place));
         to[n++] = {p, name_meeting(corner.edge, side), corner.edge, place};
@@ -218,14 +213,14 @@ void FaceClip::cut_side(const SeenFace& seen, Recorder& recorder) {
 struct LeftOver {
   std::span<const ClippedCorner> corners;
   std::size_t count() const { return corners.size(); }
-  const Vec3& place(std::size_t i) const { return corners[i].p; }
+  const Four& place(std::size_t i) const { return corners[i].p; }
   std::uint32_t name(std::size_t i) const { return corners[i].name; }
 };
 
 /// By the tape if it is of these faces and still holds, else afresh.
-template <typename MiddleA>
+template <typename PutMiddleA>
 Manifold clip_or_replay(const BoxFacePlane& plane, bool reference_is_a, const BoxFace& incident,
-                        const SeenFace& seen, std::uint32_t faces, const MiddleA& middle_A,
+                        const SeenFace& seen, std::uint32_t faces, const PutMiddleA& put_middle_A,
                         const Lying& lying, KeptClip& kept) {
   const double tolerance = lying.tolerance.inside;
   if (kept.tape.faces == faces) {
@@ -239,13 +234,13 @@ Manifold clip_or_replay(const BoxFacePlane& plane, bool reference_is_a, const Bo
                 run_side(std::integral_constant<std::size_t, 1>()) &&
                 run_side(std::integral_constant<std::size_t, 2>()) &&
                 run_side(std::integral_constant<std::size_t, 3>());
-    if (kept.held) return collect_points(replay, middle_A, lying);
+    if (kept.held) return collect_points(replay, put_middle_A, lying);
   }
   kept.tape.faces = 0;
   FaceClip fresh(plane, reference_is_a, incident, seen, tolerance);
   return collect_points(LeftOver{kept.wanted ? fresh.cut(seen, TapeRecorder(kept.tape, faces, 4))
                                              : fresh.cut(seen, NoRecorder())},
-                        middle_A, lying);
+                        put_middle_A, lying);
 }
 
 }  // namespace
@@ -269,14 +264,18 @@ Manifold clip_faces(const BoxPair& pair, const BoxAxis& axis, const BoxFace& fac
   if (reference_is_a) {
     const BoxFacePlane plane(face_a, pair.a, axis.normal_A);
     const SeenFace seen(plane, face_b, pair.R, pair.t, pair.b);
-    const auto middle_A = [&](const auto& p) { return plane.middle(p); };
-    return clip_or_replay(plane, true, face_b, seen, faces, middle_A, lying, kept);
+    const auto put_middle_A = [&](const Four& p, Vec3& middle) { plane.put_middle(p, middle); };
+    return clip_or_replay(plane, true, face_b, seen, faces, put_middle_A, lying, kept);
   }
   const Mat3 R_BA = pair.R.transpose();
   const BoxFacePlane plane(face_b, pair.b, -(R_BA * axis.normal_A));
   const SeenFace seen(plane, face_a, R_BA, -(R_BA * pair.t), pair.a);
-  const auto middle_A = [&](const auto& p) -> Vec3 { return pair.R * plane.middle(p) + pair.t; };
-  return clip_or_replay(plane, false, face_a, seen, faces, middle_A, lying, kept);
+  const auto put_middle_A = [&](const Four& p, Vec3& middle) {
+    Vec3 middle_B;
+    plane.put_middle(p, middle_B);
+    middle = pair.R * middle_B + pair.t;
+  };
+  return clip_or_replay(plane, false, face_a, seen, faces, put_middle_A, lying, kept);
 }
 
 }  // namespace tumble

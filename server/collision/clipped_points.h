@@ -94,19 +94,24 @@ struct PointsInPlane {
 };
 
 /// Everything up to the margin. If that is nothing although the bodies overlap, by rounding, the lowest corner of what is
-/// left speaks for it. `middle_A(p)` is the point in A in the middle between p and the plane.
-template <typename Corners, typename MiddleA>
-Manifold collect_points(const Corners& corners, const MiddleA& middle_A, const Lying& lying) {
+/// left speaks for it. `put_middle_A(p, middle)` makes `middle` the point in A in the middle between p and the plane.
+template <typename Corners, typename PutMiddleA>
+Manifold collect_points(const Corners& corners, const PutMiddleA& put_middle_A, const Lying& lying) {
   Manifold manifold;
   manifold.normal_A = lying.normal_A;
   const std::size_t total = corners.count();
+  const auto put = [&](std::size_t i, ManifoldPoint& point) {
+    put_middle_A(corners.place(i), point.p_A);
+    point.separation = corners.place(i)[2];
+    point.feature = corners.name(i);
+  };
   std::size_t count = 0;
   PointsInPlane seen;
   for (std::size_t i = 0; i < total && count < kMaxManifoldPoints; ++i) {
-    const auto& p = corners.place(i);
+    const Four& p = corners.place(i);
     if (!(p[2] <= lying.margin)) continue;
     seen.set(count, p[0], p[1]);
-    manifold.points[count++] = {middle_A(p), p[2], corners.name(i)};
+    put(i, manifold.points[count++]);
   }
   manifold.count = static_cast<int>(count);
   // In the plane they are no further apart than in space but for the tilt of the normal.
@@ -114,10 +119,10 @@ Manifold collect_points(const Corners& corners, const MiddleA& middle_A, const L
   if (total > kMaxManifoldPoints || !(seen.closest() > kTilted * lying.tolerance.merge)) {
     manifold.count = 0;
     for (std::size_t i = 0; i < total && manifold.count < kMaxManifoldPoints; ++i) {
-      const auto& p = corners.place(i);
-      if (!(p[2] <= lying.margin)) continue;
-      manifold.count = add_or_merge(manifold.points.data(), manifold.count, lying.tolerance.merge,
-                                    {middle_A(p), p[2], corners.name(i)});
+      if (!(corners.place(i)[2] <= lying.margin)) continue;
+      ManifoldPoint point;
+      put(i, point);
+      manifold.count = add_or_merge(manifold.points.data(), manifold.count, lying.tolerance.merge, point);
     }
   }
   if (manifold.count > 0 || !lying.overlap || total == 0) return manifold;
@@ -125,9 +130,9 @@ Manifold collect_points(const Corners& corners, const MiddleA& middle_A, const L
   for (std::size_t i = 1; i < total; ++i) {
     if (corners.place(i)[2] < corners.place(lowest)[2]) lowest = i;
   }
-  const auto& p = corners.place(lowest);
-  manifold = single_point(lying.normal_A, middle_A(p), std::min(p[2], lying.margin), lying.margin,
-                          corners.name(lowest));
+  manifold.count = 1;
+  put(lowest, manifold.points[0]);
+  manifold.points[0].separation = std::min(manifold.points[0].separation, lying.margin);
   return manifold;
 }
 

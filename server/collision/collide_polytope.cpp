@@ -100,7 +100,6 @@ Manifold clip_faces(const PlacedFace& reference, const PlacedFace& incident, boo
   const Lying lying{facet.normal_A, facet.separation <= 0.0, margin,
                     ContactTolerance::of(std::min(reference.width(), incident.width()), face_to_face)};
   const double tolerance = lying.tolerance.inside;
-  const auto middle_A = [&](const auto& p) { return plane.middle_A(p); };
   if (faces != 0 && kept.tape.faces == faces) {
     std::array<Four, ClipTape::kLoop> corners;
     for (std::size_t k = 0; k < incident.count(); ++k) {
@@ -112,7 +111,8 @@ Manifold clip_faces(const PlacedFace& reference, const PlacedFace& incident, boo
       return replay.run_side(
           k, true, [&](const Four& p) { return side.outside(p); }, tolerance);
     });
-    if (kept.held) return collect_points(replay, middle_A, lying);
+    const auto put_middle_A = [&](const Four& p, Vec3& middle) { middle = plane.middle_A(p); };
+    if (kept.held) return collect_points(replay, put_middle_A, lying);
   }
 
   ClipPolygon polygon(reference_is_a);
@@ -131,6 +131,7 @@ Manifold clip_faces(const PlacedFace& reference, const PlacedFace& incident, boo
   });
   if (cuts < reference.count()) recorder.touch();
   if (kept.wanted) polygon.write(recorder);
+  const auto middle_A = [&](const Vec3& p) { return plane.middle_A(p); };
   return polygon.make_manifold(middle_A, lying.normal_A, lying.overlap, margin, lying.tolerance.merge);
 }
 

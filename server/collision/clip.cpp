@@ -10,7 +10,8 @@ namespace tumble {
 void ClipPolygon::add_vertex(const Vec3& p, std::uint32_t vertex, std::uint32_t mark) {
   const std::uint32_t name = name_vertex(!reference_is_a_, vertex);
   Vertex& added = loops_[0][static_cast<std::size_t>(count_)];
-  added = {p, name, vertex, vertex, false, mark, mark, static_cast<std::uint32_t>(count_)};
+  added = {four(p.x(), p.y(), p.z()),         name, vertex, vertex, false, mark, mark,
+           static_cast<std::uint32_t>(count_)};
   if (count_ > 0) {
     Vertex& before = loops_[0][static_cast<std::size_t>(count_ - 1)];
     before.head = vertex;
@@ -63,7 +64,7 @@ void ClipPolygon::cut(const ClipSide& side, double tolerance, TapeRecorder* reco
     const bool inside = distance <= tolerance, next_inside = next_distance <= tolerance;
     if (inside) kept[n++] = vertex;
     if (inside != next_inside) {
-      Vec3 p;
+      Four p;
       if (n < kept.size() && cross_side(vertex.p, vertices[next].p, distance, next_distance, p)) {
         kept[n] = vertex;
         kept[n].p = p;

@@ -7,6 +7,7 @@
 
 #include "collision/manifold_builder.h"
 #include "collision/tape_recorder.h"
+#include "math/four.h"
 
 namespace tumble {
 
@@ -68,7 +69,7 @@ class ClipPolygon {
   int count() const { return count_; }
   Corner corner(int i) const {
     const Vertex& vertex = loops_[static_cast<std::size_t>(current_)][static_cast<std::size_t>(i)];
-    return {vertex.p, vertex.name, vertex.marks};
+    return {Vec3(vertex.p[0], vertex.p[1], vertex.p[2]), vertex.name, vertex.marks};
   }
 
   /// Everything up to the margin as manifold with normal_A (from A to B). If that is nothing although the bodies overlap, by
@@ -80,17 +81,18 @@ class ClipPolygon {
     ManifoldBuilder builder(normal_A, margin, merge);
     for (int i = 0; i < count_; ++i) {
       const Vertex& vertex = loops_[static_cast<std::size_t>(current_)][static_cast<std::size_t>(i)];
-      if (vertex.p.z() <= margin) builder.add(middle_A(vertex.p), vertex.p.z(), vertex.name);
+      if (vertex.p[2] <= margin) builder.add(middle_A(vertex.p), vertex.p[2], vertex.name);
     }
     if (builder.count() > 0 || !overlap || count_ == 0) return builder.finish();
     const Corner lowest = lowest_corner();
-    return single_point(normal_A, middle_A(lowest.p), std::min(lowest.p.z(), margin), margin, lowest.name);
+    return single_point(normal_A, middle_A(four(lowest.p.x(), lowest.p.y(), lowest.p.z())),
+                        std::min(lowest.p.z(), margin), margin, lowest.name);
   }
 
  private:
   static constexpr int kCapacity = 2 * kMaxFaceVertices + 2;
   struct Vertex {
-    Vec3 p;
+    Four p;
     std::uint32_t name;
     std::uint32_t tail, head;   ///< Of the edge that starts here, as numbered in its body.
     bool on_side;               ///< That edge is a side of the reference face.

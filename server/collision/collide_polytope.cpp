@@ -131,7 +131,7 @@ Manifold clip_faces(const PlacedFace& reference, const PlacedFace& incident, boo
   });
   if (cuts < reference.count()) recorder.touch();
   if (kept.wanted) polygon.write(recorder);
-  const auto middle_A = [&](const Vec3& p) { return plane.middle_A(p); };
+  const auto middle_A = [&](const Four& p) { return plane.middle_A(p); };
   return polygon.make_manifold(middle_A, lying.normal_A, lying.overlap, margin, lying.tolerance.merge);
 }
 

@@ -12,6 +12,7 @@
 #include <tuple>
 
 #include "collision/quickhull.h"
+#include "math/four.h"
 
 namespace tumble {
 namespace {
@@ -211,14 +212,27 @@ void drop_collinear(std::vector<std::vector<std::uint32_t>>& loops, std::size_t 
 }  // namespace
 
 Lowest scan_lowest(std::span<const Vec3> vertices, const Vec3& d) {
-  std::array<double, kScannedVertices> heights;
+  std::array<Four, kScannedVertices / 4> heights;
+  heights[(vertices.size() - 1) / 4] = four(kInfinity);
+  double* const height = &heights[0][0];
   const double* const p = vertices.front().data();  // one after the other: this loop goes in packets
   for (std::size_t i = 0; i < vertices.size(); ++i) {
-    heights[i] = d.x() * p[3 * i] + d.y() * p[3 * i + 1] + d.z() * p[3 * i + 2];
+    height[i] = d.x() * p[3 * i] + d.y() * p[3 * i + 1] + d.z() * p[3 * i + 2];
   }
-  Lowest lowest{0, kInfinity};
-  for (std::uint32_t i = 0; i < vertices.size(); ++i) {
-    if (heights[i] < lowest.height) lowest = {i, heights[i]};
+  // The first of the lowest in each of four lanes, then of these.
+  Four least = heights[0];
+  FourFlags group{}, at{};
+  for (std::size_t k = 1; 4 * k < vertices.size(); ++k) {
+    group += 1;
+    const FourFlags lower = heights[k] < least;
+    least = lower ? heights[k] : least;
+    at = lower ? group : at;
+  }
+  Lowest lowest{static_cast<std::uint32_t>(4 * at[0]), least[0]};
+  for (std::uint32_t lane = 1; lane < 4; ++lane) {
+    const auto vertex = static_cast<std::uint32_t>(4 * at[lane]) + lane;
+    if (least[lane] < lowest.height || (least[lane] == lowest.height && vertex < lowest.vertex))
+      lowest = {vertex, least[lane]};
   }
   return lowest;
 }

@@ -228,6 +228,23 @@ TEST(ConvexHull, DoesNotDependOnScale) {
   }
 }
 
+TEST(ConvexHull, TheLowestVertexIsTheFirstOfEquals) {
+  std::mt19937_64 random(5);
+  const auto whole = [&] { return static_cast<double>(random() % 3); };  // many are as low as others
+  for (std::size_t count = 1; count <= kScannedVertices; ++count) {
+    for (int i = 0; i < 50; ++i) {
+      std::vector<Vec3> vertices;
+      for (std::size_t k = 0; k < count; ++k) vertices.emplace_back(whole(), whole(), whole());
+      const Vec3 d(whole() - 1.0, whole() - 1.0, whole() - 1.0);
+      const auto lower = [&](const Vec3& v, const Vec3& w) { return d.dot(v) < d.dot(w); };
+      const auto first = std::min_element(vertices.begin(), vertices.end(), lower);
+      const Lowest lowest = scan_lowest(vertices, d);
+      ASSERT_EQ(lowest.vertex, first - vertices.begin()) << count;
+      ASSERT_EQ(lowest.height, d.dot(*first));
+    }
+  }
+}
+
 TEST(ConvexHull, NamesWhatIsWrong) {
   EXPECT_EQ(error_of({}), "convex hull: 0 points, at least 4 are needed");
   EXPECT_EQ(error_of(std::vector<Vec3>(10, Vec3::Ones())),

@@ -19,8 +19,7 @@ struct BoxEdge {
   std::uint32_t tail, head;
 };
 BoxEdge edge_along(const Vec3& h, int i, const Vec3& d) {
-  constexpr int kNext[] = {1, 2, 0, 1};
-  const int k = kNext[i], l = kNext[i + 1];
+  const int k = i == 2 ? 0 : i + 1, l = 3 - i - k;
   BoxEdge edge{Vec3::Zero(), 0, 0};
   edge.centre[k] = std::copysign(h[k], d[k]);
   edge.centre[l] = std::copysign(h[l], d[l]);
@@ -35,12 +34,15 @@ struct CrossingEdges {
   CrossingEdges(const BoxPair& pair, const BoxAxis& axis)
       : edge_a(edge_along(pair.a, axis.i, axis.normal_A)),
         edge_b(edge_along(pair.b, axis.j, pair.R.transpose() * -axis.normal_A)),
-        a{edge_a.centre, pair.a[axis.i] * Vec3::Unit(axis.i)},
-        b{pair.t + pair.R * edge_b.centre, pair.b[axis.j] * pair.R.col(axis.j)} {}
+        centre_b(pair.t + pair.R * edge_b.centre),
+        reach_a(pair.a[axis.i] * Vec3::Unit(axis.i)),
+        reach_b(pair.b[axis.j] * pair.R.col(axis.j)) {}
+  Segment a() const { return {edge_a.centre, reach_a}; }
+  Segment b() const { return {centre_b, reach_b}; }
   std::uint32_t name() const { return name_crossing(edge_a.tail, edge_a.head, edge_b.tail, edge_b.head); }
 
   BoxEdge edge_a, edge_b;
-  Segment a, b;
+  Vec3 centre_b, reach_a, reach_b;
 };
 
 /// sin^2 of the angle from which on edges cross in one point, whatever the tolerances.
@@ -49,16 +51,16 @@ constexpr double kCrossing = 1e-2;
 Manifold cross_edges(const BoxPair& pair, const BoxAxis& axis, double margin) {
   const CrossingEdges edges(pair, axis);
   // Where lines cross, a + s e_i and b + t r_j with e_i . r_j = cosine, their distance is the axis' separation.
-  const Vec3 d = edges.b.centre - edges.a.centre, along_b = pair.R.col(axis.j);
+  const Vec3 d = edges.centre_b - edges.edge_a.centre, along_b = pair.R.col(axis.j);
   const double cosine = pair.R(axis.i, axis.j), sine2 = 1.0 - cosine * cosine, along = d.dot(along_b);
   const double s = d[axis.i] - cosine * along, t = cosine * d[axis.i] - along;
   if (sine2 > kCrossing && std::abs(s) <= pair.a[axis.i] * sine2 && std::abs(t) <= pair.b[axis.j] * sine2) {
-    Vec3 middle_A = 0.5 * (edges.a.centre + edges.b.centre + (t / sine2) * along_b);
+    Vec3 middle_A = 0.5 * (edges.edge_a.centre + edges.centre_b + (t / sine2) * along_b);
     middle_A[axis.i] += 0.5 * (s / sine2);
     return single_point(axis.normal_A, middle_A, axis.separation, margin, edges.name());
   }
   const ContactTolerance tolerance = ContactTolerance::of(std::min(pair.a.minCoeff(), pair.b.minCoeff()));
-  return make_segment_manifold({edges.a, 0.0}, {edges.b, 0.0}, axis.normal_A, margin, tolerance.merge,
+  return make_segment_manifold({edges.a(), 0.0}, {edges.b(), 0.0}, axis.normal_A, margin, tolerance.merge,
                                edges.name());
 }
 
@@ -75,7 +77,7 @@ void measure_overhang(const BoxPair& pair, const BoxAxis& axis, const BoxFace& f
                       AxisContact& contact) {
   if (axis.kind == BoxAxis::Kind::edges) {
     const CrossingEdges edges(pair, axis);
-    contact.overhang = distance_between(edges.a, edges.b) - axis.separation;
+    contact.overhang = distance_between(edges.a(), edges.b()) - axis.separation;
     contact.tilt = 1.0;
     return;
   }

@@ -20,9 +20,9 @@ constexpr double kTolerance = 1e-10, kDigits = 16.0 * 0x1p-52;
 constexpr double kRigidity = 1e6, kLifting = 1e3;
 /// [rad] longest turn: beyond it the gaps' linearization says nothing.
 constexpr double kMostTurn = 0.2;
-/// Of the largest gap: longest shift. By kinetic energy a light body goes any way before one of a million times its mass is
-/// lifted, up to being drawn out of the tower that it carries.
-constexpr double kMostShift = 10.0;
+/// Of bodies that something immovable holds up none weighs more than so many times the lightest: by kinetic energy a light
+/// one goes any way before one of a million times its mass is lifted, up to being drawn out of the tower that it carries.
+constexpr double kHeaviest = 10.0;
 constexpr int kMostSteps = 20;
 constexpr double kLeastShare = 1e-3;  // of the way to a target
 
@@ -42,7 +42,7 @@ class Projection {
  private:
   void add_contact(const PointContact& c);
   void add_row(const ScalarRow& row);
-  double stiffness(double mass) const { return kRigidity * mass + kLifting * mass_; }
+  double stiffness(double mass) const { return kRigidity * std::min(mass, mass_) + kLifting * mass_; }
   double missing(const Gap& gap, const std::vector<Vec6>& dx) const;
   bool find_target();
   double energy(const std::vector<Vec6>& dx) const;
@@ -85,9 +85,17 @@ bool overlaps(const ContactProblem& problem) {
          std::any_of(problem.rows.begin(), problem.rows.end(), apart);
 }
 
+bool is_held(const ContactProblem& problem) {
+  const auto holds = [&](const auto& joins) {
+    return problem.bodies[joins.a].inv_mass == 0.0 || problem.bodies[joins.b].inv_mass == 0.0;
+  };
+  return std::any_of(problem.contacts.begin(), problem.contacts.end(), holds) ||
+         std::any_of(problem.rows.begin(), problem.rows.end(), holds);
+}
+
 Projection::Projection(ContactProblem& problem, std::shared_ptr<const BlockPattern> pattern, double most)
     : problem_(problem), system_(problem, std::move(pattern)), most_(most) {
-  for (const SolverBody& body : problem.bodies) mass_ += body.inv_mass > 0.0 ? 1.0 / body.inv_mass : 0.0;
+  mass_ = system_.limit_masses(is_held(problem) ? kHeaviest : kInfinity);
   gaps_.reserve(problem.contacts.size() + problem.rows.size());
   for (const PointContact& c : problem.contacts) {
     if (c.mass_n > 0.0) add_contact(c);
@@ -191,13 +199,9 @@ OverlapReport Projection::solve() {
 }
 
 void Projection::store(OverlapReport& report) {
-  double turn = 0.0, shift = 0.0, lacks = 0.0;
-  for (const Vec6& dx : dx_) {
-    turn = std::max(turn, dx.tail<3>().norm());
-    shift = std::max(shift, dx.head<3>().norm());
-  }
-  for (const Gap& gap : gaps_) lacks = std::max(lacks, std::abs(gap.lacks));
-  const double share = std::min({1.0, kMostTurn / turn, kMostShift * lacks / shift});
+  double turn = 0.0;
+  for (const Vec6& dx : dx_) turn = std::max(turn, dx.tail<3>().norm());
+  const double share = std::min(1.0, kMostTurn / turn);
   for (std::size_t i = 0; i < problem_.bodies.size(); ++i) {
     SolverBody& body = problem_.bodies[i];
     if (body.inv_mass == 0.0) continue;

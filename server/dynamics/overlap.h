@@ -3,7 +3,8 @@
 // problem of the velocities unsolvable. Gaps of joints are taken back with them. Of all displacements dx the least in
 // kinetic energy,
 //   min 1/2 dx^T M dx + sum 1/2 k_i max(0, d_i - J_i dx)^2,   d_i what the contact lacks at the end of the step,
-// with k_i so large that a millionth of a gap is left. What nothing can satisfy (a body between walls that both overlap it)
+// with k_i so large that a millionth of a gap is left. Where something immovable holds the bodies up, M takes none of them
+// for more than ten times as heavy as the lightest. What nothing can satisfy (a body between walls that both overlap it)
 // ends in the middle instead of without end. World frame.
 #pragma once
 

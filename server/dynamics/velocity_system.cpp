@@ -167,6 +167,19 @@ void VelocitySystem::add_impulse(const Coupling& c, const Vec3& p, std::vector<V
   }
 }
 
+double VelocitySystem::limit_masses(double ratio) {
+  double lightest = kInfinity, sum = 0.0;
+  for (const Mass& body : masses_) lightest = std::min(lightest, body.mass);
+  for (Mass& body : masses_) {
+    const double share = std::min(1.0, ratio * lightest / body.mass);
+    body.mass *= share;
+    body.I_W *= share;
+    body.inv_I_W /= share;
+    sum += body.mass;
+  }
+  return sum;
+}
+
 void VelocitySystem::set_mass(double scale) {
   matrix_.set_zero();
   for (std::uint32_t i = 0; i < masses_.size(); ++i) {

@@ -53,6 +53,9 @@ class VelocitySystem {
   /// sum <- sum + J^T p.
   void add_impulse(const Coupling& c, const Vec3& p, std::vector<Vec6>& sum) const;
 
+  /// From now on no body weighs more than `ratio` times the lightest; moments of inertia are scaled alike. Returns the sum
+  /// of the masses [kg].
+  double limit_masses(double ratio);
   /// H <- scale M.
   void set_mass(double scale = 1.0);
   /// H <- H + J^T G J.

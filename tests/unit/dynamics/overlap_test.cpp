@@ -113,8 +113,10 @@ TEST(Overlap, DrawsNobodyOutOfATower) {
   stop(problem);
   for (PointContact& c : problem.contacts) c.separation = c.a == 0 ? 0.0 : -0.001;
   const OverlapReport report = remove_overlaps(problem, kAtOnce);
-  EXPECT_NEAR(problem.bodies[1].shift.norm(), 0.01, 1e-9);  // ten times the overlap; 0.1 without the limit
-  EXPECT_LE(report.largest, 0.011);
+  // 1.0e-4 m; 0.1 m if the weight on top counted in full.
+  EXPECT_NEAR(problem.bodies[1].shift.norm(), 10.0 * 0.01 * 0.001, 2e-6);
+  EXPECT_NEAR(problem.bodies[2].shift.z(), 0.001, 1e-5);
+  EXPECT_LE(report.largest, 1.1e-3);
 }
 
 TEST(Overlap, OfFreeBodiesMovesNothingAsAWhole) {

@@ -35,22 +35,27 @@ Case placed_column(const std::string& name, const std::string& what, const std::
   return {name, what + " stand, at rest within 0.5 s, drift and penetration <= 1e-6 m", precise(), act};
 }
 
-/// From 1 cm above the ground and 1.5 cm above each other, tilted. After the fall nothing moves any more.
+/// From 1 cm above the ground and 1.5 cm above each other, tilted. After the fall nothing moves any more. A column of ten is
+/// a tower, which rocks from edge to edge and keeps 98 % of its speed at each: short steps and the finest accuracy see that
+/// for seconds.
 Case dropped_column(const std::string& name, const std::string& what, const std::vector<double>& masses) {
   const auto act = [masses](Trial& trial) {
+    constexpr double kPatience = 5.0, kRocking = 0.05;  // [s], [m] of the top
     trial.begin(cube_stack(trial.options(), masses, {.height = 0.01, .gap = 0.015, .tilt = 0.01}));
-    const double time = trial.run_to_rest(5.0);
-    // A column of ten is a tower that rocks from edge to edge and keeps 98 % of its speed at each: shorter steps see it.
-    trial.expect("time to rest [s]", time, trial.way().time_step > 0.01 ? 0.5 : 5.0);
+    const double time = trial.run_to_rest(kPatience);
+    const bool sees_rocks = trial.way().time_step < 0.01 || trial.way().accuracy == Accuracy::exact;
+    if (!sees_rocks) trial.expect("time to rest [s]", time, 0.5);
     trial.expect("penetration [m]", trial.deepest_now(), kStill);
     trial.expect("way of the fall [m]", trial.drift(), 0.2);
     trial.begin(World(trial.world()));
     trial.run(trial.lasting(5.0, 60.0));
-    trial.expect("drift at rest [m]", trial.drift(), 0.0);
+    trial.expect("drift from then on [m]", trial.drift(), time < kPatience ? 0.0 : kRocking);
   };
   return {name,
-          what + ", dropped by 1 cm with tilts of 0.01 rad, come to rest within 0.5 s and stay to the bit",
-          nobody(), act};
+          what +
+              ", dropped by 1 cm with tilts of 0.01 rad, stand, and stay to the bit once at rest: within 0.5 "
+              "s at 1/60 s",
+          precise(), act};
 }
 
 void column_stands(Trial& trial) {

@@ -38,7 +38,7 @@ void arch_stands(Trial& trial) {
   trial.expect("drift [m]", trial.drift(), 1e-3);
 }
 
-/// A house of cards of so many storeys (Box2D's): leaning pairs at 25 degrees with flat cards between.
+/// A house of cards of so many storeys (Box2D's): leaning pairs at 25 degrees with flat cards between, from tip to tip.
 World card_house(const Options& options, int storeys) {
   const Material paper{.friction = 0.7, .density = 700.0};
   const Box card{Vec3(0.001, 0.1, 0.2)};  // 2 mm x 20 cm x 40 cm
@@ -46,6 +46,7 @@ World card_house(const Options& options, int storeys) {
   // A leaning card stands on an edge of its lower face and touches its partner with an edge of its upper one.
   const double rise = 0.2 * std::cos(lean) + 0.001 * std::sin(lean);
   const double half_foot = 0.2 * std::sin(lean) + 0.001 * std::cos(lean);
+  const Box flat_card{Vec3(2.0 * half_foot - 0.0005, 0.1, 0.001)};  // 1 mm short of the next one
   World world(options);
   world.create_body(ground(paper));
   double floor = 0.0;
@@ -64,8 +65,8 @@ World card_house(const Options& options, int storeys) {
     floor += 2.0 * rise;
     for (int flat = 0; flat + 1 < storey; ++flat) {
       const Vec3 place(width * (flat - 0.5 * (storey - 2)), 0, floor + 0.001);
-      world.create_body(body("flat" + std::to_string(storey) + "_" + std::to_string(flat),
-                             Box{Vec3(0.2, 0.1, 0.001)}, place, paper));
+      world.create_body(
+          body("flat" + std::to_string(storey) + "_" + std::to_string(flat), flat_card, place, paper));
     }
     floor += 0.002;
   }
@@ -117,7 +118,7 @@ std::vector<Case> structure_cases() {
   return {
       {"arch", "An arch of 15 voussoirs stands: drift <= 1 mm", precise(), arch_stands},
       {"cards_2", "A house of 7 cards of 2 mm stands: drift <= 1 mm", precise(), cards(2)},
-      {"cards_5", "A house of 40 cards of 2 mm stands: drift <= 1 mm", nobody(), cards(5)},
+      {"cards_5", "A house of 40 cards of 2 mm stands: drift <= 1 mm", precise(), cards(5)},
       {"dominoes", "A row of dominoes falls to the last", precise(), dominoes_fall},
       {"dominoes_stand", "A row that nobody touches stands", precise(), dominoes_stand},
   };

@@ -29,7 +29,6 @@ Json counters_json(const Counters& c) {
       {"pairs_exact", n.exact},
       {"pairs_closed_form", n.closed_form},
       {"pairs_facet_kept", n.facet_kept},
-      {"pairs_clip_kept", n.clip_kept},
       {"pairs_skipped_clear", c.pairs_skipped_clear},
       {"bodies_stepped", c.bodies_stepped},
       {"bodies_skipped_resting", c.bodies_skipped_resting},

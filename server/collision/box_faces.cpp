@@ -2,11 +2,9 @@
 #include "collision/box_faces.h"
 
 #include <algorithm>
-#include <span>
 
 #include "collision/clipped_points.h"
 #include "collision/feature_name.h"
-#include "collision/tape_recorder.h"
 
 namespace tumble {
 namespace {
@@ -117,8 +115,7 @@ struct SeenFace {
 struct ClippedCorner {
   Four p;
   std::uint32_t name;
-  std::uint16_t edge;  ///< That starts here: of the incident box, or kEdgeIds + a side of the reference face.
-  std::uint16_t place;  ///< On the tape.
+  std::uint32_t edge;  ///< That starts here: of the incident box, or kEdgeIds + a side of the reference face.
 };
 
 /// A cut adds no more than one corner to a convex face, half of all if rounding made it anything else: 4, 6, 9, 13, 19.
@@ -137,27 +134,27 @@ class FaceClip {
     const std::uint32_t side = up ? 1u << incident.k : 0u, bit1 = 1u << along1, bit2 = 1u << along2;
     const std::uint32_t first = up ? side : side | bit1, second = first ^ bit1;
     const auto& names = kCornerNames[reference_is_a];
-    loops_[0][0] = {seen.corners[0], names[first], edge_of(along1, first), 0};
-    loops_[0][1] = {seen.corners[1], names[second], edge_of(along2, second), 1};
-    loops_[0][2] = {seen.corners[2], names[second | bit2], edge_of(along1, second), 2};
-    loops_[0][3] = {seen.corners[3], names[first | bit2], edge_of(along2, first), 3};
+    loops_[0][0] = {seen.corners[0], names[first], edge_of(along1, first)};
+    loops_[0][1] = {seen.corners[1], names[second], edge_of(along2, second)};
+    loops_[0][2] = {seen.corners[2], names[second | bit2], edge_of(along1, second)};
+    loops_[0][3] = {seen.corners[3], names[first | bit2], edge_of(along2, first)};
   }
 
-  template <typename Recorder>
-  std::span<const ClippedCorner> cut(const SeenFace& seen, Recorder recorder) {
-    cut_side<0>(seen, recorder);
-    cut_side<1>(seen, recorder);
-    cut_side<2>(seen, recorder);
-    cut_side<3>(seen, recorder);
-    for (std::size_t i = 0; i < count_; ++i) recorder.leave(i, loop()[i].place, loop()[i].name);
-    recorder.finish(count_);
-    return {loop().data(), count_};
+  void cut(const SeenFace& seen) {
+    cut_side<0>(seen);
+    cut_side<1>(seen);
+    cut_side<2>(seen);
+    cut_side<3>(seen);
   }
+
+  // What is left.
+  std::size_t count() const { return count_; }
+  const Four& place(std::size_t i) const { return loops_[current_][i].p; }
+  std::uint32_t name(std::size_t i) const { return loops_[current_][i].name; }
 
  private:
-  const ClippedLoop& loop() const { return loops_[current_]; }
-  template <std::uint32_t side, typename Recorder>
-  void cut_side(const SeenFace& seen, Recorder& recorder);
+  template <std::uint32_t side>
+  void cut_side(const SeenFace& seen);
   std::uint32_t name_meeting(std::uint32_t edge, std::uint32_t side) const;
 
   const BoxFacePlane& plane_;
@@ -178,10 +175,9 @@ std::uint32_t FaceClip::name_meeting(std::uint32_t edge, std::uint32_t side) con
   return reference_is_a_ ? kCrossingNames[of_side][edge] : kCrossingNames[edge][of_side];
 }
 
-template <std::uint32_t side, typename Recorder>
-void FaceClip::cut_side(const SeenFace& seen, Recorder& recorder) {
-  if (!seen.is_cut<side>(plane_, tolerance_)) return recorder.skip_side(side);
-  recorder.start_side(side);
+template <std::uint32_t side>
+void FaceClip::cut_side(const SeenFace& seen) {
+  if (!seen.is_cut<side>(plane_, tolerance_)) return;
   const ClippedLoop& from = loops_[current_];
   ClippedLoop& to = loops_[1 - current_];
   std::size_t n = 0;
@@ -190,16 +186,11 @@ void FaceClip::cut_side(const SeenFace& seen, Recorder& recorder) {
     const ClippedCorner &corner = from[i], &next = from[i + 1 == count_ ? 0 : i + 1];
     const double next_outside = plane_.outside<side>(next.p);
     const bool inside = outside <= tolerance_;
-    recorder.look(corner.place, inside);
     if (inside) to[n++] = corner;
     if (inside != (next_outside <= tolerance_)) {
       Four p;
-      if (cross_side(corner.p, next.p, outside, next_outside, p)) {
-        const auto place = static_cast<std::uint16_t>(recorder.cross(corner.place, next.place));
-        to[n++] = {p, name_meeting(corner.edge, side), corner.edge, place};
-      } else {
-        recorder.touch();
-      }
+      if (cross_side(corner.p, next.p, outside, next_outside, p))
+        to[n++] = {p, name_meeting(corner.edge, side), corner.edge};
       // The loop leaves: what was kept last is where it turns onto the side.
       if (inside) to[n - 1].edge = kEdgeIds + side;
     }
@@ -209,38 +200,12 @@ void FaceClip::cut_side(const SeenFace& seen, Recorder& recorder) {
   count_ = n;
 }
 
-/// What is left after clipping afresh; as TapeReplay's.
-struct LeftOver {
-  std::span<const ClippedCorner> corners;
-  std::size_t count() const { return corners.size(); }
-  const Four& place(std::size_t i) const { return corners[i].p; }
-  std::uint32_t name(std::size_t i) const { return corners[i].name; }
-};
-
-/// By the tape if it is of these faces and still holds, else afresh.
 template <typename PutMiddleA>
-Manifold clip_or_replay(const BoxFacePlane& plane, bool reference_is_a, const BoxFace& incident,
-                        const SeenFace& seen, std::uint32_t faces, const PutMiddleA& put_middle_A,
-                        const Lying& lying, KeptClip& kept) {
-  const double tolerance = lying.tolerance.inside;
-  if (kept.tape.faces == faces) {
-    TapeReplay replay(kept.tape, seen.corners);
-    const auto run_side = [&]<std::size_t side>(std::integral_constant<std::size_t, side>) {
-      return replay.run_side(
-          side, seen.is_cut<side>(plane, tolerance), [&](const Four& p) { return plane.outside<side>(p); },
-          tolerance);
-    };
-    kept.held = run_side(std::integral_constant<std::size_t, 0>()) &&
-                run_side(std::integral_constant<std::size_t, 1>()) &&
-                run_side(std::integral_constant<std::size_t, 2>()) &&
-                run_side(std::integral_constant<std::size_t, 3>());
-    if (kept.held) return collect_points(replay, put_middle_A, lying);
-  }
-  kept.tape.faces = 0;
-  FaceClip fresh(plane, reference_is_a, incident, seen, tolerance);
-  return collect_points(LeftOver{kept.wanted ? fresh.cut(seen, TapeRecorder(kept.tape, faces, 4))
-                                             : fresh.cut(seen, NoRecorder())},
-                        put_middle_A, lying);
+Manifold clip(const BoxFacePlane& plane, bool reference_is_a, const BoxFace& incident, const SeenFace& seen,
+              const PutMiddleA& put_middle_A, const Lying& lying) {
+  FaceClip left(plane, reference_is_a, incident, seen, lying.tolerance.inside);
+  left.cut(seen);
+  return collect_points(left, put_middle_A, lying);
 }
 
 }  // namespace
@@ -256,16 +221,15 @@ bool lie_face_to_face(const BoxFace& face_a, const BoxFace& face_b) {
 }
 
 Manifold clip_faces(const BoxPair& pair, const BoxAxis& axis, const BoxFace& face_a, const BoxFace& face_b,
-                    bool reference_is_a, double margin, KeptClip& kept) {
+                    bool reference_is_a, double margin) {
   const double width = std::min(face_a.width(pair.a), face_b.width(pair.b));
   const Lying lying{axis.normal_A, axis.separation <= 0.0, margin,
                     ContactTolerance::of(width, lie_face_to_face(face_a, face_b))};
-  const std::uint32_t faces = 1u + 6u * face_a.index() + face_b.index() + (reference_is_a ? 36u : 0u);
   if (reference_is_a) {
     const BoxFacePlane plane(face_a, pair.a, axis.normal_A);
     const SeenFace seen(plane, face_b, pair.R, pair.t, pair.b);
     const auto put_middle_A = [&](const Four& p, Vec3& middle) { plane.put_middle(p, middle); };
-    return clip_or_replay(plane, true, face_b, seen, faces, put_middle_A, lying, kept);
+    return clip(plane, true, face_b, seen, put_middle_A, lying);
   }
   const Mat3 R_BA = pair.R.transpose();
   const BoxFacePlane plane(face_b, pair.b, -(R_BA * axis.normal_A));
@@ -275,7 +239,7 @@ Manifold clip_faces(const BoxPair& pair, const BoxAxis& axis, const BoxFace& fac
     plane.put_middle(p, middle_B);
     middle = pair.R * middle_B + pair.t;
   };
-  return clip_or_replay(plane, false, face_a, seen, faces, put_middle_A, lying, kept);
+  return clip(plane, false, face_a, seen, put_middle_A, lying);
 }
 
 }  // namespace tumble

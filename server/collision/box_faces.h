@@ -3,7 +3,6 @@
 #pragma once
 
 #include "collision/box_axis.h"
-#include "collision/clip_tape.h"
 #include "collision/manifold.h"
 
 namespace tumble {
@@ -15,15 +14,13 @@ struct BoxFace {
   double sign, cosine;
 
   static BoxFace towards(const Vec3& d);
-  std::uint32_t index() const { return 2u * static_cast<std::uint32_t>(k) + (sign < 0.0); }
   /// Half of the narrower side of the face [m].
   double width(const Vec3& h) const { return std::min(h[(k + 1) % 3], h[(k + 2) % 3]); }
 };
 
 /// Clips B's face against A's or the other way round, whichever `reference_is_a` says, along the axis.
-/// Of the last clipping it is only kept who met whom: the result is that of a clipping afresh, to the bit.
 Manifold clip_faces(const BoxPair& pair, const BoxAxis& axis, const BoxFace& face_a, const BoxFace& face_b,
-                    bool reference_is_a, double margin, KeptClip& kept);
+                    bool reference_is_a, double margin);
 
 /// Whether both faces look along the contact normal up to 0.01 rad.
 bool lie_face_to_face(const BoxFace& face_a, const BoxFace& face_b);

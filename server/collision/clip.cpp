@@ -10,8 +10,7 @@ namespace tumble {
 void ClipPolygon::add_vertex(const Vec3& p, std::uint32_t vertex, std::uint32_t mark) {
   const std::uint32_t name = name_vertex(!reference_is_a_, vertex);
   Vertex& added = loops_[0][static_cast<std::size_t>(count_)];
-  added = {four(p.x(), p.y(), p.z()),         name, vertex, vertex, false, mark, mark,
-           static_cast<std::uint32_t>(count_)};
+  added = {four(p.x(), p.y(), p.z()), name, vertex, vertex, false, mark, mark};
   if (count_ > 0) {
     Vertex& before = loops_[0][static_cast<std::size_t>(count_ - 1)];
     before.head = vertex;
@@ -42,14 +41,9 @@ void ClipPolygon::continue_along(const ClipSide& side, Vertex& vertex) {
   vertex.mark = side.mark;
 }
 
-void ClipPolygon::cut(const ClipSide& side, double tolerance, TapeRecorder* recorder, std::size_t index) {
+void ClipPolygon::cut(const ClipSide& side, double tolerance) {
   const std::size_t total = static_cast<std::size_t>(count_);
   const Loop& vertices = loops_[static_cast<std::size_t>(current_)];
-  if (recorder != nullptr) {
-    recorder->start_side(index);
-    for (std::size_t i = 0; i < total; ++i)
-      recorder->look(vertices[i].place, side.outside(vertices[i].p) <= tolerance);
-  }
   std::size_t inner = 0;
   while (inner < total && side.outside(vertices[inner].p) <= tolerance) ++inner;
   if (inner == total) return;
@@ -70,11 +64,7 @@ void ClipPolygon::cut(const ClipSide& side, double tolerance, TapeRecorder* reco
         kept[n].p = p;
         kept[n].name = name_meeting(vertex, side);
         kept[n].marks = vertex.mark | side.mark;
-        if (recorder != nullptr)
-          kept[n].place = static_cast<std::uint32_t>(recorder->cross(vertex.place, vertices[next].place));
         ++n;
-      } else if (recorder != nullptr) {
-        recorder->touch();
       }
       // The loop leaves: what was kept last is where it turns onto the side.
       if (inside) continue_along(side, kept[n - 1]);
@@ -83,13 +73,6 @@ void ClipPolygon::cut(const ClipSide& side, double tolerance, TapeRecorder* reco
   }
   current_ = 1 - current_;
   count_ = static_cast<int>(n);
-}
-
-void ClipPolygon::write(TapeRecorder& recorder) const {
-  const Loop& vertices = loops_[static_cast<std::size_t>(current_)];
-  for (std::size_t i = 0; i < static_cast<std::size_t>(count_); ++i)
-    recorder.leave(i, vertices[i].place, vertices[i].name);
-  recorder.finish(static_cast<std::size_t>(count_));
 }
 
 }  // namespace tumble

@@ -6,7 +6,6 @@
 #include <array>
 
 #include "collision/manifold_builder.h"
-#include "collision/tape_recorder.h"
 #include "math/four.h"
 
 namespace tumble {
@@ -56,10 +55,8 @@ class ClipPolygon {
   /// After the last vertex.
   void close();
 
-  /// Cuts away what is further outside than `tolerance` [m]. With a recorder, writes down how; it knows the side by `index`.
-  void cut(const ClipSide& side, double tolerance, TapeRecorder* recorder = nullptr, std::size_t index = 0);
-  /// After the last cut: the corners that are left.
-  void write(TapeRecorder& recorder) const;
+  /// Cuts away what is further outside than `tolerance` [m].
+  void cut(const ClipSide& side, double tolerance);
 
   /// What is left, corner by corner. `marks`: of the edges and sides that meet in it.
   struct Corner {
@@ -97,7 +94,6 @@ class ClipPolygon {
     std::uint32_t tail, head;   ///< Of the edge that starts here, as numbered in its body.
     bool on_side;               ///< That edge is a side of the reference face.
     std::uint32_t mark, marks;  ///< Of that edge; of all that meets in the vertex.
-    std::uint32_t place;        ///< On the tape.
   };
   using Loop = std::array<Vertex, kCapacity>;
   /// Of what is left.

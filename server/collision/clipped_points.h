@@ -3,9 +3,7 @@
 
 #include <algorithm>
 #include <array>
-#include <span>
 
-#include "collision/clip_tape.h"
 #include "collision/manifold_builder.h"
 #include "math/four.h"
 
@@ -19,44 +17,6 @@ bool cross_side(const Point& p, const Point& q, double outside, double next_outs
   crossing = p + (outside / -rise) * (q - p);
   return outside * next_outside < 0.0 && std::abs(rise) > ContactTolerance::kNoCrossing;
 }
-
-/// A clipping from its tape: the places of all corners and crossings.
-class TapeReplay {
- public:
-  TapeReplay(const ClipTape& tape, std::span<const Four> corners) : tape_(tape), made_(corners.size()) {
-    std::copy(corners.begin(), corners.end(), places_.begin());
-  }
-
-  /// One side after the other: `cuts` if it may have anything to cut away, outside(p) how far p lies outside of it. False:
-  /// something else meets than what the tape says.
-  template <typename Outside>
-  bool run_side(std::size_t index, bool cuts, const Outside& outside_of, double tolerance) {
-    const ClipTape::Side& side = tape_.sides[index];
-    if (cuts != (side.count > 0)) return false;
-    std::array<double, ClipTape::kPlaces> outside;
-    std::uint32_t inside = 0;
-    for (std::uint32_t i = 0; i < side.count; ++i) {
-      const std::size_t place = side.loop[i];
-      outside[place] = outside_of(places_[place]);
-      inside |= static_cast<std::uint32_t>(outside[place] <= tolerance) << i;
-    }
-    if (cuts && inside != side.inside) return false;
-    for (std::uint32_t i = 0; i < (cuts ? side.crossings : 0u); ++i) {
-      const auto [from, to] = side.crossing[i];
-      if (!cross_side(places_[from], places_[to], outside[from], outside[to], places_[made_++])) return false;
-    }
-    return true;
-  }
-
-  std::size_t count() const { return tape_.count; }
-  const Four& place(std::size_t i) const { return places_[tape_.left[i]]; }
-  std::uint32_t name(std::size_t i) const { return tape_.names[i]; }
-
- private:
-  const ClipTape& tape_;
-  std::size_t made_;
-  std::array<Four, ClipTape::kPlaces> places_;  ///< x, y and z in the reference plane's frame.
-};
 
 /// What a manifold needs to know beside its corners.
 struct Lying {

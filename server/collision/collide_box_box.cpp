@@ -65,11 +65,11 @@ Manifold cross_edges(const BoxPair& pair, const BoxAxis& axis, double margin) {
 }
 
 Manifold make_manifold(const BoxPair& pair, const BoxAxis& axis, const BoxFace& face_a, const BoxFace& face_b,
-                       double margin, KeptClip& kept) {
+                       double margin) {
   const bool flat_a = face_a.cosine > ContactTolerance::kFlat,
              flat_b = face_b.cosine > ContactTolerance::kFlat;
   if (axis.kind == BoxAxis::Kind::edges && !(flat_a || flat_b)) return cross_edges(pair, axis, margin);
-  return clip_faces(pair, axis, face_a, face_b, axis.kind == BoxAxis::Kind::face_a || flat_a, margin, kept);
+  return clip_faces(pair, axis, face_a, face_b, axis.kind == BoxAxis::Kind::face_a || flat_a, margin);
 }
 
 /// How far the lowest corner of a contact along a face's normal lies beside that face; how far edges miss each other.
@@ -103,7 +103,7 @@ Manifold touch_along(const BoxPair& pair, const BoxAxis& axis, const Pose& X_AB,
                      PairCache& cache) {
   const BoxFace face_a = BoxFace::towards(axis.normal_A);
   const BoxFace face_b = BoxFace::towards(pair.R.transpose() * -axis.normal_A);
-  Manifold manifold = make_manifold(pair, axis, face_a, face_b, margin, cache.clip);
+  Manifold manifold = make_manifold(pair, axis, face_a, face_b, margin);
   AxisContact contact{manifold, axis.separation, pair.a.norm() + pair.b.norm(),
                       lie_face_to_face(face_a, face_b)};
   if (contact.separation > 0.0 && contact.face_to_face) measure_overhang(pair, axis, face_a, face_b, contact);
@@ -112,7 +112,7 @@ Manifold touch_along(const BoxPair& pair, const BoxAxis& axis, const Pose& X_AB,
       contact_of_closest_points(contact, Box{pair.a}, Box{pair.b}, X_AB, margin, cache);
   if (closest.lying) {
     const BoxAxis across{closest.separation, closest.manifold.normal_A, axis.kind, axis.i, axis.j};
-    manifold = make_manifold(pair, across, face_a, face_b, margin, cache.clip);
+    manifold = make_manifold(pair, across, face_a, face_b, margin);
     set_deepest(manifold, closest.separation);
   } else {
     manifold = closest.manifold;

@@ -63,76 +63,35 @@ FacePlane plane_of(const PlacedFace& reference, const Vec3& n_A) {
   return plane;
 }
 
-/// Calls visit(k, side) with each side of a face of some length, until one returns false.
-template <typename Visit>
-bool visit_sides(const PlacedFace& face, const FacePlane& plane, const Visit& visit) {
-  const auto corner = [&](std::size_t k) -> Vec3 {
-    const Vec3 d = face.vertex_A(k) - plane.origin_A;
-    return {plane.u_A.dot(d), plane.v_A.dot(d), 0.0};
-  };
+/// By each side of a face that has a length.
+void cut_by_sides(const PlacedFace& face, const FacePlane& plane, double tolerance, ClipPolygon& polygon) {
   Vec3 tail = Vec3::Zero();
   for (std::size_t k = 0; k < face.count(); ++k) {
     const std::size_t next = k + 1 == face.count() ? 0 : k + 1;
-    const Vec3 head = corner(next);
+    const Vec3 d = face.vertex_A(next) - plane.origin_A, head(plane.u_A.dot(d), plane.v_A.dot(d), 0.0);
     const double x = head.y() - tail.y(), y = tail.x() - head.x(), length = std::sqrt(x * x + y * y);
     if (length > 0.0) {
       const double nx = x / length, ny = y / length;
-      const ClipSide side{nx, ny, nx * tail.x() + ny * tail.y(), face.index(k), face.index(next)};
-      if (!visit(k, side)) return false;
+      polygon.cut({nx, ny, nx * tail.x() + ny * tail.y(), face.index(k), face.index(next)}, tolerance);
     }
     tail = head;
   }
-  return true;
 }
 
-/// A number of the two faces and of which one is cut, 0 if there is none for them.
-std::uint32_t number_of(std::uint32_t face_a, std::uint32_t face_b, bool reference_is_a) {
-  constexpr std::uint32_t kFaces = 1u << 15;
-  if (face_a >= kFaces || face_b >= kFaces) return 0;
-  return 1u + (face_a * kFaces + face_b) * 2u + reference_is_a;
-}
-
-/// By the tape if it is of these faces and still holds, else afresh.
 Manifold clip_faces(const PlacedFace& reference, const PlacedFace& incident, bool reference_is_a,
-                    const Facet& facet, std::uint32_t faces, double margin, bool face_to_face,
-                    KeptClip& kept) {
+                    const Facet& facet, double margin, bool face_to_face) {
   const FacePlane plane = plane_of(reference, reference_is_a ? facet.normal_A : Vec3(-facet.normal_A));
-  const Lying lying{facet.normal_A, facet.separation <= 0.0, margin,
-                    ContactTolerance::of(std::min(reference.width(), incident.width()), face_to_face)};
-  const double tolerance = lying.tolerance.inside;
-  if (faces != 0 && kept.tape.faces == faces) {
-    std::array<Four, ClipTape::kLoop> corners;
-    for (std::size_t k = 0; k < incident.count(); ++k) {
-      const Vec3 p = plane.to_plane(incident.vertex_A(k));
-      corners[k] = four(p.x(), p.y(), p.z());
-    }
-    TapeReplay replay(kept.tape, {corners.data(), incident.count()});
-    kept.held = visit_sides(reference, plane, [&](std::size_t k, const ClipSide& side) {
-      return replay.run_side(
-          k, true, [&](const Four& p) { return side.outside(p); }, tolerance);
-    });
-    const auto put_middle_A = [&](const Four& p, Vec3& middle) { middle = plane.middle_A(p); };
-    if (kept.held) return collect_points(replay, put_middle_A, lying);
-  }
-
+  const ContactTolerance tolerance =
+      ContactTolerance::of(std::min(reference.width(), incident.width()), face_to_face);
   ClipPolygon polygon(reference_is_a);
   const std::size_t first = incident.is_thinned() ? incident.lowest_along(plane.n_A) : 0;
   for (std::size_t k = 0; k < incident.count(); ++k) {
     polygon.add_vertex(plane.to_plane(incident.vertex_A(k, first)), incident.index(k, first));
   }
   polygon.close();
-  kept.tape.faces = 0;
-  TapeRecorder recorder(kept.tape, kept.wanted ? faces : 0, incident.count());
-  TapeRecorder* const writing = kept.wanted ? &recorder : nullptr;
-  std::size_t cuts = 0;
-  visit_sides(reference, plane, [&](std::size_t k, const ClipSide& side) {
-    polygon.cut(side, tolerance, writing, k);
-    return ++cuts > 0;
-  });
-  if (cuts < reference.count()) recorder.touch();
-  if (kept.wanted) polygon.write(recorder);
+  cut_by_sides(reference, plane, tolerance.inside, polygon);
   const auto middle_A = [&](const Four& p) { return plane.middle_A(p); };
-  return polygon.make_manifold(middle_A, lying.normal_A, lying.overlap, margin, lying.tolerance.merge);
+  return polygon.make_manifold(middle_A, facet.normal_A, facet.separation <= 0.0, margin, tolerance.merge);
 }
 
 /// The edges of A and B that cross, in A's frame.
@@ -183,13 +142,11 @@ bool reference_is_a(const Facet& facet, const FacePair& faces) {
   return facet.kind == Facet::Kind::face_a || faces.cosine_a > ContactTolerance::kFlat;
 }
 
-Manifold make_manifold(const PolytopePair& pair, const Facet& facet, const FacePair& faces, double margin,
-                       KeptClip& kept) {
+Manifold make_manifold(const PolytopePair& pair, const Facet& facet, const FacePair& faces, double margin) {
   if (facet.kind == Facet::Kind::edges && !faces.either_is_flat()) return cross_edges(pair, facet, margin);
   const PlacedFace a(pair.a, faces.a), b(pair.b, faces.b, &pair);
   const bool face_to_face = faces.lie_face_to_face(), of_a = reference_is_a(facet, faces);
-  return clip_faces(of_a ? a : b, of_a ? b : a, of_a, facet, number_of(faces.a, faces.b, of_a), margin,
-                    face_to_face, kept);
+  return clip_faces(of_a ? a : b, of_a ? b : a, of_a, facet, margin, face_to_face);
 }
 
 /// How far the lowest vertex of a contact along a face's normal lies beside that face; how far edges miss each other.
@@ -229,7 +186,7 @@ Manifold collide(const PolytopePair& pair, const Shape& a, const Shape& b, const
   if (separation > margin) return {};
   Facet facet = answer.facet;
   const FacePair faces = find_faces(pair, facet, cache.vertex_A, cache.vertex_B);
-  Manifold manifold = make_manifold(pair, facet, faces, margin, cache.clip);
+  Manifold manifold = make_manifold(pair, facet, faces, margin);
   AxisContact contact{manifold, separation, pair.a.radius + pair.b.radius, faces.lie_face_to_face()};
   if (separation > 0.0 && contact.face_to_face)
     measure_overhang(pair, facet, faces, cache.vertex_A, cache.vertex_B, contact);
@@ -238,7 +195,7 @@ Manifold collide(const PolytopePair& pair, const Shape& a, const Shape& b, const
   if (closest.lying) {
     facet.normal_A = closest.manifold.normal_A;
     facet.separation = closest.separation;
-    manifold = make_manifold(pair, facet, faces, margin, cache.clip);
+    manifold = make_manifold(pair, facet, faces, margin);
     set_deepest(manifold, closest.separation);
   } else {
     manifold = closest.manifold;

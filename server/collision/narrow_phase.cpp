@@ -115,7 +115,7 @@ class Query {
     } else if (options_.use_gjk && function.gjk_first && !was_near && beyond_by_gjk()) {
       ++counters_.gjk;
     } else {
-      find_exactly(function, was_near, manifold);
+      find_exactly(function, manifold);
     }
     return true;
   }
@@ -126,16 +126,12 @@ class Query {
            has_same_bits(X_AB_.q, cache_.q_AB);
   }
 
-  void find_exactly(const PairFunction& function, bool was_near, Manifold& manifold) {
+  void find_exactly(const PairFunction& function, Manifold& manifold) {
     ++counters_.exact;
-    cache_.clip.wanted = options_.use_kept_clip && was_near;
-    cache_.clip.held = false;
-    if (!cache_.clip.wanted) cache_.clip.tape.faces = 0;
     if (!options_.use_cached_facet) cache_.slack = -1.0;
     if (cache_.slack >= 0.0) cache_.slack -= 4.0 * moved_by();
     if (cache_.slack >= 0.0) ++counters_.facet_kept;
     replace(manifold, [&] { return function.exact(a_, b_, X_AB_, margin_, cache_); });
-    counters_.clip_kept += cache_.clip.held;
     remember_pose();
     cache_.margin = margin_;
   }

@@ -18,7 +18,6 @@ struct NarrowPhaseOptions {
   bool use_cached_axis = true;   ///< Off: no early end on last step's separating axis.
   bool use_cached_facet =
       true;  ///< Off: every contact of hulls is searched afresh instead of kept while it leads.
-  bool use_kept_clip = true;  ///< Off: faces that lie on each other are clipped afresh every time.
   bool use_gjk =
       true;  ///< Off: straight to the exact features (same contacts, other cost), as boxes always go.
 };
@@ -27,10 +26,10 @@ struct NarrowPhaseCounters {
   /// Where pairs ended; the last six add up to `queries`. A triangle of a surface and a body are a pair.
   std::uint64_t queries = 0, unmoved = 0, motion_bound = 0, cached_axis = 0, gjk = 0, exact = 0,
                 closed_form = 0;
-  /// On the way: "apart" answers of libccd without proof, runs stopped by the call budget, facets kept without search,
-  /// clippings that met the same corners and edges as the last time.
+  /// On the way: "apart" answers of libccd without proof, runs stopped by the call budget, facets kept without
+  /// search.
   std::uint64_t triangles = 0;  ///< Queries of which one side was a triangle of a surface.
-  std::uint64_t gjk_uncertified = 0, gjk_budget_hit = 0, facet_kept = 0, clip_kept = 0;
+  std::uint64_t gjk_uncertified = 0, gjk_budget_hit = 0, facet_kept = 0;
 };
 
 /// Makes `manifold` that of shape A at X_WA and shape B at X_WB: every point with separation <= margin [m], none if the

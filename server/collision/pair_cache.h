@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <limits>
 
-#include "collision/clip_tape.h"
 #include "math/types.h"
 
 namespace tumble {
@@ -25,7 +24,6 @@ struct PairCache {
   std::uint32_t feature = 0;                 ///< Facet that won the last exact search; 0: none.
   std::uint32_t vertex_A = 0, vertex_B = 0;  ///< Start of hill climbing on hulls.
   Order order = Order::open;                 ///< Of two shapes of one type: as asked, or turned round.
-  KeptClip clip;
 };
 
 }  // namespace tumble

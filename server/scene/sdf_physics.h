@@ -19,7 +19,6 @@ void for_each_option(OptionsType& options, Visit&& visit) {
   visit("use_cached_axis", options.narrow_phase.use_cached_axis);
   visit("use_gjk", options.narrow_phase.use_gjk);
   visit("use_cached_facet", options.narrow_phase.use_cached_facet);
-  visit("use_kept_clip", options.narrow_phase.use_kept_clip);
   visit("max_sweeps", options.solver_settings.max_sweeps);
   visit("tolerance", options.solver_settings.tolerance);
   visit("sub_steps", options.solver_settings.sub_steps);

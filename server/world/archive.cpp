@@ -113,11 +113,9 @@ void serialize(Archive& archive, GeometryPair& pair) {
   auto& [a, b, part] = pair;
   archive(a, b, part);
 }
-/// But for the last clipping, which only saves work.
 template <typename Archive>
 void serialize(Archive& archive, PairCache& cache) {
-  [[maybe_unused]] auto& [axis_A, gap, slack, margin, p_AB, q_AB, feature, vertex_A, vertex_B, order, clip] =
-      cache;
+  auto& [axis_A, gap, slack, margin, p_AB, q_AB, feature, vertex_A, vertex_B, order] = cache;
   archive(axis_A, gap, slack, margin, p_AB, q_AB, feature, vertex_A, vertex_B, order);
 }
 template <typename Archive>

@@ -55,8 +55,6 @@ void ContactGraph::remove(const std::vector<std::uint32_t>& indices) {
 
 namespace {
 
-using Impulses = std::array<Vec3, kMaxManifoldPoints>;
-
 /// Index of the old point that continues `point`, or -1.
 int match(const Manifold& old_manifold, const ManifoldPoint& point, double reach,
           const std::array<bool, kMaxManifoldPoints>& used) {
@@ -83,28 +81,37 @@ bool have_same_features(const Manifold& manifold, const Manifold& other) {
   return true;
 }
 
-void rearrange(const Manifold& old_manifold, const Manifold& manifold, double reach, Impulses& impulse) {
-  const Impulses old_impulse = impulse;
+/// For each new point the old one that it continues, or -1.
+std::array<int, kMaxManifoldPoints> match_all(const Manifold& old_manifold, const Manifold& manifold,
+                                              double reach) {
+  std::array<int, kMaxManifoldPoints> from{};
   std::array<bool, kMaxManifoldPoints> used{};
-  for (int i = 0; i < manifold.count; ++i) {
-    const auto point = static_cast<std::size_t>(i);
-    const int from = match(old_manifold, manifold.points[point], reach, used);
-    if (from < 0) {
-      impulse[point].setZero();
-    } else {
-      used[static_cast<std::size_t>(from)] = true;
-      impulse[point] = old_impulse[static_cast<std::size_t>(from)];
-    }
+  for (std::size_t i = 0; i < static_cast<std::size_t>(manifold.count); ++i) {
+    from[i] = match(old_manifold, manifold.points[i], reach, used);
+    if (from[i] >= 0) used[static_cast<std::size_t>(from[i])] = true;
   }
+  return from;
+}
+
+void rearrange(const std::array<int, kMaxManifoldPoints>& from, int count, Impulses& impulse) {
+  const Impulses old_impulse = impulse;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i)
+    impulse[i] = from[i] < 0 ? Vec3(Vec3::Zero()) : old_impulse[static_cast<std::size_t>(from[i])];
 }
 
 }  // namespace
 
 void transport_impulses(const Manifold& old_manifold, const Manifold& manifold, const Vec3& normal_W,
-                        double reach, Impulses& impulse) {
-  if (!have_same_features(old_manifold, manifold)) rearrange(old_manifold, manifold, reach, impulse);
+                        double reach, Impulses& impulse, Impulses& moment) {
+  if (!have_same_features(old_manifold, manifold)) {
+    const auto from = match_all(old_manifold, manifold, reach);
+    rearrange(from, manifold.count, impulse);
+    rearrange(from, manifold.count, moment);
+  }
   for (std::size_t i = 0; i < static_cast<std::size_t>(manifold.count); ++i) {
-    if (!(impulse[i].dot(normal_W) > 0.0)) impulse[i].setZero();
+    if (impulse[i].dot(normal_W) > 0.0) continue;
+    impulse[i].setZero();
+    moment[i].setZero();
   }
 }
 

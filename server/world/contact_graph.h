@@ -11,6 +11,9 @@
 
 namespace tumble {
 
+/// One for each point of a manifold; of those that are not there, without meaning.
+using Impulses = std::array<Vec3, kMaxManifoldPoints>;
+
 struct Contact {
   GeometryPair pair;
   std::uint32_t body_a = 0, body_b = 0;
@@ -24,9 +27,9 @@ struct Contact {
   Vec3 normal_W = Vec3::UnitZ();  ///< The manifold's normal in W at the last query.
   PairCache cache;
   /// Impulses of the last solve on b at each manifold point, as vectors in W [N s]: the warm start.
-  std::array<Vec3, kMaxManifoldPoints> impulse;
+  Impulses impulse;
   /// Moments of turning friction [N m s], likewise.
-  std::array<Vec3, kMaxManifoldPoints> moment;
+  Impulses moment;
 };
 
 /// A row of contacts in the order of their pairs. Contacts are big, so those that come and go move nothing but this order: a
@@ -119,9 +122,9 @@ class ContactGraph {
   std::size_t late_ = 0;             // at the end of order_, not in order
 };
 
-/// Carries impulses from the old manifold's points to the new ones: same feature first, else the nearest old point
-/// within `reach` [m], each used once; impulses that would pull are dropped.
+/// Carries impulses and moments from the old manifold's points to the new ones: same feature first, else the nearest old
+/// point within `reach` [m], each used once. New points have none; impulses that would pull are dropped with their moments.
 void transport_impulses(const Manifold& old_manifold, const Manifold& manifold, const Vec3& normal_W,
-                        double reach, std::array<Vec3, kMaxManifoldPoints>& impulse);
+                        double reach, Impulses& impulse, Impulses& moment);
 
 }  // namespace tumble

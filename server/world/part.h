@@ -45,7 +45,7 @@ struct IslandState {
   struct Touching {
     Manifold manifold;
     Vec3 normal_W;
-    std::array<Vec3, kMaxManifoldPoints> impulse, moment;
+    Impulses impulse, moment;
   };
   std::vector<Motion> motions;     // of the problem's movable bodies
   std::vector<Touching> contacts;  // of the island, in its order

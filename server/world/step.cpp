@@ -355,7 +355,8 @@ double World::update_contact(std::uint32_t index, const StepContext& step) {
   contact.normal_W = X_WA.q * contact.manifold.normal_A;
   if (contact.pair.part > 0) drop_repeated_points(contacts_, index);
   if (contact.manifold.count == 0) return margin;
-  transport_impulses(old_manifold, contact.manifold, contact.normal_W, a.contact_margin, contact.impulse);
+  transport_impulses(old_manifold, contact.manifold, contact.normal_W, a.contact_margin, contact.impulse,
+                     contact.moment);
   wake_slot(contact.body_a);
   wake_slot(contact.body_b);
   return margin;

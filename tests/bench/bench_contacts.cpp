@@ -265,7 +265,6 @@ void tumble_kept(benchmark::State& state, Make make, double pace, const NarrowPh
   state.counters["by_gjk"] = share(counters.gjk);
   state.counters["exact"] = share(counters.exact);
   state.counters["facet_kept"] = share(counters.facet_kept);
-  state.counters["clip_kept"] = share(counters.clip_kept);
 }
 
 struct BulletPoints : btDiscreteCollisionDetectorInterface::Result {
@@ -418,17 +417,14 @@ class Registry {
 };
 
 void register_polytopes(Registry& registry) {
-  NarrowPhaseOptions no_motion_bound, no_kept_manifold, no_kept_clip;
+  NarrowPhaseOptions no_motion_bound, no_kept_manifold;
   no_motion_bound.use_motion_bound = false;
   no_kept_manifold.use_kept_manifold = false;
-  no_kept_clip.use_kept_clip = false;
   registry.add_boxes("box_face", box_face);
   registry.add_boxes("box_edge", box_edge);
   registry.add_boxes("box_deep", box_deep);
   registry.add_boxes("box_resting", box_face, 1e-6);
-  registry.add("box_resting/tumble_clipped_afresh", tumble_kept, box_face, 1e-6, no_kept_clip);
   registry.add_boxes("box_calm", box_calm, 1e-6);
-  registry.add("box_calm/tumble_clipped_afresh", tumble_kept, box_calm, 1e-6, no_kept_clip);
   registry.add_boxes("box_moving", box_pass, 2e-3);
   registry.add("box_face/tumble_unmoved", tumble_kept, box_face, 0.0, NarrowPhaseOptions{});
   registry.add("box_apart/tumble_motion_bound", tumble_kept, box_apart, 1e-6, NarrowPhaseOptions{});
@@ -436,9 +432,7 @@ void register_polytopes(Registry& registry) {
   registry.add_class("hull32_shallow", hull_shallow);
   registry.add_class("hull32_deep", hull_deep);
   registry.add_class("hull32_resting", hull_rest, 1e-7);
-  registry.add("hull32_resting/tumble_clipped_afresh", tumble_kept, hull_rest, 1e-7, no_kept_clip);
   registry.add_class("hull32_calm", hull_calm, 1e-7);
-  registry.add("hull32_calm/tumble_clipped_afresh", tumble_kept, hull_calm, 1e-7, no_kept_clip);
   registry.add_class("hull32_moving", hull_pass, 2e-3);
   registry.add("hull32_shallow/tumble_facet_kept", tumble_kept, hull_shallow, 0.0, no_kept_manifold);
   registry.add("hull32_apart/tumble_motion_bound", tumble_kept, hull_apart, 1e-6, NarrowPhaseOptions{});

@@ -342,14 +342,13 @@ TEST(EveryPair, IsFiniteAndRepeatableForFlatAndNeedleShapes) {
 TEST(Pipeline, SwitchesChangeCostNotContacts) {
   RandomPose random(41);
   const std::vector<Shape> shapes = one_of_each();
-  constexpr std::size_t kSettings = 7;
+  constexpr std::size_t kSettings = 6;
   std::array<NarrowPhaseOptions, kSettings> options;
   options[1].use_motion_bound = false;
   options[2].use_cached_axis = false;
   options[3].use_gjk = false;
   options[4].use_cached_facet = false;
   options[5].use_kept_manifold = false;
-  options[6].use_kept_clip = false;
   std::array<NarrowPhaseCounters, kSettings> counters;
   int contacts = 0;
   for (int i = 0; i < 288; ++i) {
@@ -388,8 +387,6 @@ TEST(Pipeline, SwitchesChangeCostNotContacts) {
   EXPECT_EQ(counters[4].facet_kept, 0u);
   EXPECT_GT(counters[0].unmoved, 500u);
   EXPECT_EQ(counters[5].unmoved, 0u);
-  EXPECT_GT(counters[0].clip_kept, 100u);
-  EXPECT_EQ(counters[6].clip_kept, 0u);
 }
 
 /// Nothing but the same bits of pose and margin is the same question.

@@ -6,7 +6,6 @@
 namespace tumble::test {
 namespace {
 
-using Impulses = std::array<Vec3, kMaxManifoldPoints>;
 constexpr double kReach = 0.01;
 
 /// Points side by side along x, a metre apart, with these names.
@@ -28,11 +27,14 @@ Impulses impulses_of(const std::vector<double>& along_z) {
 
 TEST(TransportImpulses, StayWhereFeaturesDoAndNeverPull) {
   const Manifold manifold = manifold_of({7, 8, 9});
-  Impulses impulse = impulses_of({1.0, -2.0, 3.0});
-  transport_impulses(manifold, manifold, Vec3::UnitZ(), kReach, impulse);
+  Impulses impulse = impulses_of({1.0, -2.0, 3.0}), moment = impulses_of({0.1, 0.2, -0.3});
+  transport_impulses(manifold, manifold, Vec3::UnitZ(), kReach, impulse, moment);
   EXPECT_EQ(impulse[0], Vec3(0.5, 0, 1.0));
   EXPECT_EQ(impulse[1], Vec3::Zero());
   EXPECT_EQ(impulse[2], Vec3(0.5, 0, 3.0));
+  EXPECT_EQ(moment[0], Vec3(0.5, 0, 0.1));
+  EXPECT_EQ(moment[1], Vec3::Zero());
+  EXPECT_EQ(moment[2], Vec3(0.5, 0, -0.3));
 }
 
 TEST(TransportImpulses, FollowNamesThenPlaces) {
@@ -40,12 +42,16 @@ TEST(TransportImpulses, FollowNamesThenPlaces) {
   Manifold manifold = manifold_of({9, 5, 6, 7});
   manifold.points[1].p_A = Vec3(1.0 + 0.5 * kReach, 0, 0);  // near the old point 8
   manifold.points[2].p_A = Vec3(1.0 + 2.0 * kReach, 0, 0);  // near none
-  Impulses impulse = impulses_of({1.0, 2.0, 3.0});
-  transport_impulses(old_manifold, manifold, Vec3::UnitZ(), kReach, impulse);
+  Impulses impulse = impulses_of({1.0, 2.0, 3.0}), moment = impulses_of({0.1, 0.2, 0.3, 0.4});
+  transport_impulses(old_manifold, manifold, Vec3::UnitZ(), kReach, impulse, moment);
   EXPECT_EQ(impulse[0], Vec3(0.5, 0, 3.0));
   EXPECT_EQ(impulse[1], Vec3(0.5, 0, 2.0));
   EXPECT_EQ(impulse[2], Vec3::Zero());
   EXPECT_EQ(impulse[3], Vec3(0.5, 0, 1.0));
+  EXPECT_EQ(moment[0], Vec3(0.5, 0, 0.3));
+  EXPECT_EQ(moment[1], Vec3(0.5, 0, 0.2));
+  EXPECT_EQ(moment[2], Vec3::Zero());
+  EXPECT_EQ(moment[3], Vec3(0.5, 0, 0.1));
 }
 
 Contact contact_of(GeometryPair pair) {

@@ -5,9 +5,6 @@
 #include <array>
 #include <cmath>
 
-// Everything here is inlined: how such vectors are passed, which differs between processors, is of no concern.
-#pragma GCC diagnostic ignored "-Wpsabi"
-
 namespace tumble {
 
 using Four = double __attribute__((vector_size(32)));

@@ -212,20 +212,23 @@ void drop_collinear(std::vector<std::vector<std::uint32_t>>& loops, std::size_t 
 }  // namespace
 
 Lowest scan_lowest(std::span<const Vec3> vertices, const Vec3& d) {
-  std::array<Four, kScannedVertices / 4> heights;
-  heights[(vertices.size() - 1) / 4] = four(kInfinity);
-  double* const height = &heights[0][0];
+  std::array<double, kScannedVertices> heights;
   const double* const p = vertices.front().data();  // one after the other: this loop goes in packets
   for (std::size_t i = 0; i < vertices.size(); ++i) {
-    height[i] = d.x() * p[3 * i] + d.y() * p[3 * i + 1] + d.z() * p[3 * i + 2];
+    heights[i] = d.x() * p[3 * i] + d.y() * p[3 * i + 1] + d.z() * p[3 * i + 2];
   }
+  for (std::size_t i = vertices.size(); i % 4 != 0; ++i) heights[i] = kInfinity;
+  const auto four_from = [&](std::size_t i) {
+    return Four{heights[i], heights[i + 1], heights[i + 2], heights[i + 3]};
+  };
   // The first of the lowest in each of four lanes, then of these.
-  Four least = heights[0];
+  Four least = four_from(0);
   FourFlags group{}, at{};
-  for (std::size_t k = 1; 4 * k < vertices.size(); ++k) {
+  for (std::size_t i = 4; i < vertices.size(); i += 4) {
+    const Four next = four_from(i);
     group += 1;
-    const FourFlags lower = heights[k] < least;
-    least = lower ? heights[k] : least;
+    const FourFlags lower = next < least;
+    least = lower ? next : least;
     at = lower ? group : at;
   }
   Lowest lowest{static_cast<std::uint32_t>(4 * at[0]), least[0]};

@@ -13,39 +13,32 @@ constexpr double kMostTurning = 1e6;  // [rad/s]
 }  // namespace
 
 void set_accuracy(Options& options, Accuracy accuracy) {
+  const Options balanced;
   SolverSettings& solver = options.solver_settings;
-  switch (accuracy) {
-    case Accuracy::fast:
-      solver.max_sweeps = 8;
-      solver.tolerance = 1e-6;
-      solver.exact_work = 100.0;
-      solver.exact_calm_factor = 90.0;
-      solver.longest_sub_step = 1.0;
-      options.landing_bodies = options.midpoint_bodies = 0;
-      options.crowd_turning = Options{}.crowd_turning;
-      break;
-    case Accuracy::balanced:
-      solver.max_sweeps = SolverSettings{}.max_sweeps;
-      solver.tolerance = SolverSettings{}.tolerance;
-      solver.exact_work = SolverSettings{}.exact_work;
-      solver.exact_calm_factor = SolverSettings{}.exact_calm_factor;
-      solver.longest_sub_step = SolverSettings{}.longest_sub_step;
-      options.landing_bodies = Options{}.landing_bodies;
-      options.midpoint_bodies = Options{}.midpoint_bodies;
-      options.midpoint_turn = Options{}.midpoint_turn;
-      options.crowd_turning = Options{}.crowd_turning;
-      break;
-    case Accuracy::exact:
-      solver.max_sweeps = 1000;
-      solver.tolerance = 1e-10;
-      solver.exact_work = 1e6;
-      solver.exact_calm_factor = 30.0;
-      solver.longest_sub_step = 1.0 / 3840.0;
-      options.landing_bodies = Options{}.landing_bodies;
-      options.midpoint_bodies = Options{}.midpoint_bodies;
-      options.midpoint_turn = 0.0025;
-      options.crowd_turning = kMostTurning;
-      break;
+  solver.max_sweeps = balanced.solver_settings.max_sweeps;
+  solver.tolerance = balanced.solver_settings.tolerance;
+  solver.exact_work = balanced.solver_settings.exact_work;
+  solver.exact_calm_factor = balanced.solver_settings.exact_calm_factor;
+  solver.longest_sub_step = balanced.solver_settings.longest_sub_step;
+  options.landing_bodies = balanced.landing_bodies;
+  options.midpoint_bodies = balanced.midpoint_bodies;
+  options.midpoint_turn = balanced.midpoint_turn;
+  options.crowd_turning = balanced.crowd_turning;
+  if (accuracy == Accuracy::fast) {
+    solver.max_sweeps = 8;
+    solver.tolerance = 1e-6;
+    solver.exact_work = 100.0;
+    solver.exact_calm_factor = 90.0;
+    solver.longest_sub_step = 1.0;
+    options.landing_bodies = options.midpoint_bodies = 0;
+  } else if (accuracy == Accuracy::exact) {
+    solver.max_sweeps = 1000;
+    solver.tolerance = 1e-10;
+    solver.exact_work = 1e6;
+    solver.exact_calm_factor = 30.0;
+    solver.longest_sub_step = 1.0 / 3840.0;
+    options.midpoint_turn = 0.0025;
+    options.crowd_turning = kMostTurning;
   }
 }
 

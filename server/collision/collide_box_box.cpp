@@ -29,11 +29,11 @@ BoxEdge edge_along(const Vec3& h, int i, const Vec3& d) {
   return edge;
 }
 
-/// Edges of A and B that cross along an axis, in A's frame.
+/// Edges of A and B that cross along an axis, in A's frame. `towards_a_B` is the axis in B, from B to A.
 struct CrossingEdges {
-  CrossingEdges(const BoxPair& pair, const BoxAxis& axis)
+  CrossingEdges(const BoxPair& pair, const BoxAxis& axis, const Vec3& towards_a_B)
       : edge_a(edge_along(pair.a, axis.i, axis.normal_A)),
-        edge_b(edge_along(pair.b, axis.j, pair.R.transpose() * -axis.normal_A)),
+        edge_b(edge_along(pair.b, axis.j, towards_a_B)),
         centre_b(pair.t + pair.R * edge_b.centre),
         reach_a(pair.a[axis.i] * Vec3::Unit(axis.i)),
         reach_b(pair.b[axis.j] * pair.R.col(axis.j)) {}
@@ -48,8 +48,8 @@ struct CrossingEdges {
 /// sin^2 of the angle from which on edges cross in one point, whatever the tolerances.
 constexpr double kCrossing = 1e-2;
 
-Manifold cross_edges(const BoxPair& pair, const BoxAxis& axis, double margin) {
-  const CrossingEdges edges(pair, axis);
+Manifold cross_edges(const BoxPair& pair, const BoxAxis& axis, const Vec3& towards_a_B, double margin) {
+  const CrossingEdges edges(pair, axis, towards_a_B);
   // Where lines cross, a + s e_i and b + t r_j with e_i . r_j = cosine, their distance is the axis' separation.
   const Vec3 d = edges.centre_b - edges.edge_a.centre, along_b = pair.R.col(axis.j);
   const double cosine = pair.R(axis.i, axis.j), sine2 = 1.0 - cosine * cosine, along = d.dot(along_b);
@@ -64,19 +64,30 @@ Manifold cross_edges(const BoxPair& pair, const BoxAxis& axis, double margin) {
                                edges.name());
 }
 
-Manifold make_manifold(const BoxPair& pair, const BoxAxis& axis, const BoxFace& face_a, const BoxFace& face_b,
-                       double margin) {
-  const bool flat_a = face_a.cosine > ContactTolerance::kFlat,
-             flat_b = face_b.cosine > ContactTolerance::kFlat;
-  if (axis.kind == BoxAxis::Kind::edges && !(flat_a || flat_b)) return cross_edges(pair, axis, margin);
-  return clip_faces(pair, axis, face_a, face_b, axis.kind == BoxAxis::Kind::face_a || flat_a, margin);
+/// The faces of A and B that look at each other along an axis.
+struct FacingFaces {
+  FacingFaces(const BoxPair& pair, const BoxAxis& axis)
+      : towards_a_B(pair.R.transpose() * -axis.normal_A),
+        a(BoxFace::towards(axis.normal_A)),
+        b(BoxFace::towards(towards_a_B)) {}
+
+  Vec3 towards_a_B;  ///< The axis in B, from B to A.
+  BoxFace a, b;
+};
+
+Manifold make_manifold(const BoxPair& pair, const BoxAxis& axis, const FacingFaces& faces, double margin) {
+  const bool flat_a = faces.a.cosine > ContactTolerance::kFlat,
+             flat_b = faces.b.cosine > ContactTolerance::kFlat;
+  if (axis.kind == BoxAxis::Kind::edges && !(flat_a || flat_b))
+    return cross_edges(pair, axis, faces.towards_a_B, margin);
+  return clip_faces(pair, axis, faces.a, faces.b, axis.kind == BoxAxis::Kind::face_a || flat_a, margin);
 }
 
 /// How far the lowest corner of a contact along a face's normal lies beside that face; how far edges miss each other.
-void measure_overhang(const BoxPair& pair, const BoxAxis& axis, const BoxFace& face_a, const BoxFace& face_b,
+void measure_overhang(const BoxPair& pair, const BoxAxis& axis, const FacingFaces& faces,
                       AxisContact& contact) {
   if (axis.kind == BoxAxis::Kind::edges) {
-    const CrossingEdges edges(pair, axis);
+    const CrossingEdges edges(pair, axis, faces.towards_a_B);
     contact.overhang = distance_between(edges.a(), edges.b()) - axis.separation;
     contact.tilt = 1.0;
     return;
@@ -89,30 +100,29 @@ void measure_overhang(const BoxPair& pair, const BoxAxis& axis, const BoxFace& f
   };
   const Vec3 n_B = pair.R.transpose() * axis.normal_A;
   if (axis.kind == BoxAxis::Kind::face_a) {
-    contact.overhang = beside(pair.t + pair.R * furthest_corner(pair.b, -n_B), pair.a, face_a.k);
-    contact.tilt = sine(n_B, face_b.k);
+    contact.overhang = beside(pair.t + pair.R * furthest_corner(pair.b, -n_B), pair.a, faces.a.k);
+    contact.tilt = sine(n_B, faces.b.k);
   } else {
     const Vec3 corner = furthest_corner(pair.a, axis.normal_A);
-    contact.overhang = beside(pair.R.transpose() * (corner - pair.t), pair.b, face_b.k);
-    contact.tilt = sine(axis.normal_A, face_a.k);
+    contact.overhang = beside(pair.R.transpose() * (corner - pair.t), pair.b, faces.b.k);
+    contact.tilt = sine(axis.normal_A, faces.a.k);
   }
 }
 
 /// The contact along the axis that separates most, by at most the margin.
 Manifold touch_along(const BoxPair& pair, const BoxAxis& axis, const Pose& X_AB, double margin,
                      PairCache& cache) {
-  const BoxFace face_a = BoxFace::towards(axis.normal_A);
-  const BoxFace face_b = BoxFace::towards(pair.R.transpose() * -axis.normal_A);
-  Manifold manifold = make_manifold(pair, axis, face_a, face_b, margin);
+  const FacingFaces faces(pair, axis);
+  Manifold manifold = make_manifold(pair, axis, faces, margin);
   AxisContact contact{manifold, axis.separation, pair.a.norm() + pair.b.norm(),
-                      lie_face_to_face(face_a, face_b)};
-  if (contact.separation > 0.0 && contact.face_to_face) measure_overhang(pair, axis, face_a, face_b, contact);
+                      lie_face_to_face(faces.a, faces.b)};
+  if (contact.separation > 0.0 && contact.face_to_face) measure_overhang(pair, axis, faces, contact);
   if (touches_along_axis(contact)) return manifold;
   const ClosestContact closest =
       contact_of_closest_points(contact, Box{pair.a}, Box{pair.b}, X_AB, margin, cache);
   if (closest.lying) {
     const BoxAxis across{closest.separation, closest.manifold.normal_A, axis.kind, axis.i, axis.j};
-    manifold = make_manifold(pair, across, face_a, face_b, margin);
+    manifold = make_manifold(pair, across, faces, margin);
     set_deepest(manifold, closest.separation);
   } else {
     manifold = closest.manifold;

@@ -113,6 +113,10 @@ class Search {
   bool explains(const DifferenceHull::Face& face, const Reach& reach) const;
   bool bends_up(PiecePair pair, const Vec3& n, double slack = 0.0) const;
   bool falls_towards_best(const Reach& reach) const;
+  template <typename Bends>
+  bool is_one_valley(const Vec3& n, const Bends& bends) const;
+  bool ridge_bends_up(const Vec3& n) const;
+  bool is_of_best_valley(const Vec3& n) const;
   bool is_furthest(const CandidateDirection& candidate) const;
   enum class Descent { nowhere, under_way, arrived };
   Descent converge(CandidateDirection& candidate) const;
@@ -358,21 +362,39 @@ bool Search::meets_best_only(const DifferenceHull::Face& face) const {
                      [&](std::uint16_t corner) { return best_.holds(hull_.corner(corner).pieces); });
 }
 
-/// True if no better direction hides behind the face, since it lies near the best one, the same pieces are furthest, and
-/// curvature leaves room for one minimum only, or for none.
+/// True if no better direction hides behind the face, since it lies near the best one, all of it is of one pair of pieces,
+/// and curvature leaves room for one minimum only, or for none. Of a ridge only a search from there can say so.
 bool Search::explains(const DifferenceHull::Face& face, const Reach& reach) const {
   if (!best_.optimal || best_.count > 2 || face.outside || reach.n.dot(best_.n) < kBasin ||
       !best_.holds(reach.pieces))
     return false;
-  if (!meets_best_only(face)) return false;
-  const bool one_piece = std::all_of(face.corners.begin(), face.corners.end(), [&](std::uint16_t corner) {
-    return hull_.corner(corner).pieces == reach.pieces;
-  });
-  if (!one_piece) {
-    const std::optional<Ridge> ridge = ridge_at(best_, reach.n);
-    return ridge && ridge->second > 0.0;
+  const auto is_of_reach = [&](std::uint16_t corner) { return hull_.corner(corner).pieces == reach.pieces; };
+  if (!std::all_of(face.corners.begin(), face.corners.end(), is_of_reach)) return false;
+  return is_one_valley(reach.n, [&](const Vec3& n) { return bends_up(reach.pieces, n); }) &&
+         (best_.count == 1 || falls_towards_best(reach));
+}
+
+/// Whether the reach bends up along n and on the way from there to the best direction. A positive curvature at both ends does
+/// not do: where shapes are thin, two optima may lie near each other, narrow both, with a wide top between them.
+template <typename Bends>
+bool Search::is_one_valley(const Vec3& n, const Bends& bends) const {
+  for (const double share : {1.0, 0.75, 0.5, 0.25}) {
+    if (!bends(Vec3((share * n + (1.0 - share) * best_.n).normalized()))) return false;
   }
-  return bends_up(reach.pieces, reach.n) && (best_.count == 1 || falls_towards_best(reach));
+  return true;
+}
+
+/// Along the best direction's ridge, next to n.
+bool Search::ridge_bends_up(const Vec3& n) const {
+  const std::optional<Ridge> ridge = ridge_at(best_, n);
+  return ridge && ridge->second > 0.0;
+}
+
+/// From n to the best direction, which a search from there has found again.
+bool Search::is_of_best_valley(const Vec3& n) const {
+  if (best_.count > 2) return true;
+  return best_.count == 2 ? is_one_valley(n, [&](const Vec3& m) { return ridge_bends_up(m); })
+                          : is_one_valley(n, [&](const Vec3& m) { return bends_up(best_.pieces[0], m); });
 }
 
 /// Whether the reach of a piece has a minimum's curvature along n, up to the slack [m].
@@ -413,7 +435,8 @@ void Search::expand() {
     const bool settled = candidate.holds(reached.pieces) && reached.h() > face->bound + tolerance;
     const bool near = candidate.n.dot(best_.n) > kBasin;
     const Ending ending = settled ? polish(candidate) : Ending::nowhere;
-    if (ending == Ending::same_optimum && near && !face->outside && meets_best_only(*face)) {
+    if (ending == Ending::same_optimum && near && !face->outside && meets_best_only(*face) &&
+        is_of_best_valley(reached.n)) {
       face->closed = true;
       continue;
     }

@@ -145,6 +145,27 @@ TEST(Curved, SeesTheWayOutBesideARidge) {
   EXPECT_LE(missed_separation(a, b, X_AB), 1e-12);  // 0; was 1.1e-6
 }
 
+// Two optima 0.14 to 0.25 rad apart, narrow both, with a wide top between them: thin shapes. Each found among 100 000 poses.
+TEST(Curved, SeesPastTheTopBetweenTwoWaysOut) {
+  const Quat q_cone(-0.0046468398632434644, -0.93039787330598223, -0.091069230816827496, 0.35502760375134529);
+  const Vec3 p_cone(0.056946952174293838, 0.012612039068362009, 0.018472796568929618);
+  const Ellipsoid needle{Vec3(0.0015343384038342183, 0.0035830987025093743, 0.44129577411242737)};
+  EXPECT_LE(missed_separation(Cone{0.26814696830611667, 0.15284149004786035}, needle, {q_cone, p_cone}),
+            1e-12);  // 0; was 1.8e-3
+
+  const Quat q_thin(0.84075074880215417, 0.13594228181129148, 0.52375839446736261, -0.018303514130542202);
+  const Vec3 p_thin(0.63753780652068748, 0.029848617414926441, -0.082472934790805474);
+  const Ellipsoid plate{Vec3(0.7769493262038405, 0.004240235945384396, 0.15315440036218997)},
+      rod{Vec3(0.0012823822026487132, 0.0021985557651905173, 0.14848169440607861)};
+  EXPECT_LE(missed_separation(plate, rod, {q_thin, p_thin}), 1e-12);  // 0; was 2.9e-5
+
+  const Quat q_flat(-0.66788324153944101, 0.53026519969471164, 0.086970717917531179, 0.51496299662053924);
+  const Vec3 p_flat(-0.018867178917760182, -0.022141792102611052, 0.068379812933855991);
+  const Cone flat{0.039887736742556676, 0.0020699275208368433},
+      flatter{0.072375793988281895, 0.0022379538635867134};
+  EXPECT_LE(missed_separation(flat, flatter, {q_flat, p_flat}), 1e-12);  // 0; was 5.8e-9
+}
+
 TEST(Curved, AMillimetreAndAKilometreAreTheSame) {
   RandomPose random(81);
   const auto scaled = [](const Shape& shape, double s) -> Shape {

@@ -62,8 +62,8 @@ struct BoxFacePlane {
     middle[k2] = half * n2 + p[1];
   }
   /// How far p lies outside of a side [m].
-  template <std::size_t side, typename Point>
-  double outside(const Point& p) const {
+  template <std::size_t side>
+  double outside(const Four& p) const {
     return (side < 2 ? p[side % 2] : -p[side % 2]) - (side % 2 == 0 ? h1 : h2);
   }
 

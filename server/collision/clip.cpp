@@ -1,7 +1,7 @@
 // Polygon clipping for contact manifolds, in the plane of the reference face. Tolerances: ContactTolerance.
 #include "collision/clip.h"
 
-#include <cmath>
+#include <algorithm>
 
 #include "collision/clipped_points.h"
 #include "collision/feature_name.h"
@@ -73,6 +73,27 @@ void ClipPolygon::cut(const ClipSide& side, double tolerance) {
   }
   current_ = 1 - current_;
   count_ = static_cast<int>(n);
+}
+
+ClipPolygon::Corner ClipPolygon::lowest_corner() const {
+  Corner lowest = corner(0);
+  for (int i = 1; i < count_; ++i) {
+    if (corner(i).p.z() < lowest.p.z()) lowest = corner(i);
+  }
+  return lowest;
+}
+
+Manifold ClipPolygon::make_manifold(const FacePlane& plane, const Vec3& normal_A, bool overlap, double margin,
+                                    double merge) const {
+  ManifoldBuilder builder(normal_A, margin, merge);
+  for (int i = 0; i < count_; ++i) {
+    const Corner left = corner(i);
+    builder.add(plane.middle_A(left.p), left.p.z(), left.name);
+  }
+  if (builder.count() > 0 || !overlap || count_ == 0) return builder.finish();
+  const Corner lowest = lowest_corner();
+  return single_point(normal_A, plane.middle_A(lowest.p), std::min(lowest.p.z(), margin), margin,
+                      lowest.name);
 }
 
 }  // namespace tumble

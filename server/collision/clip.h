@@ -27,19 +27,13 @@ struct FacePlane {
     return {u_A.dot(foot), v_A.dot(foot), z};
   }
   /// The middle between such a point and its foot on the plane, in A.
-  template <typename Point>
-  Vec3 middle_A(const Point& p) const {
-    return origin_A + p[0] * u_A + p[1] * v_A + (0.5 * p[2]) * n_A;
-  }
+  Vec3 middle_A(const Vec3& p) const { return origin_A + p.x() * u_A + p.y() * v_A + (0.5 * p.z()) * n_A; }
 };
 
 /// One side of the reference face, from vertex `tail` to `head`: inside is nx x + ny y <= offset, (nx, ny) unit.
 struct ClipSide {
   /// How far p lies outside [m].
-  template <typename Point>
-  double outside(const Point& p) const {
-    return nx * p[0] + ny * p[1] - offset;
-  }
+  double outside(const Four& p) const { return nx * p[0] + ny * p[1] - offset; }
 
   double nx, ny, offset;
   std::uint32_t tail, head;
@@ -70,21 +64,9 @@ class ClipPolygon {
   }
 
   /// Everything up to the margin as manifold with normal_A (from A to B). If that is nothing although the bodies overlap, by
-  /// rounding, the lowest corner of what is left speaks for it. `middle_A(p)` is the point in A in the middle between p and
-  /// the plane.
-  template <typename MiddleA>
-  Manifold make_manifold(const MiddleA& middle_A, const Vec3& normal_A, bool overlap, double margin,
-                         double merge) const {
-    ManifoldBuilder builder(normal_A, margin, merge);
-    for (int i = 0; i < count_; ++i) {
-      const Vertex& vertex = loops_[static_cast<std::size_t>(current_)][static_cast<std::size_t>(i)];
-      if (vertex.p[2] <= margin) builder.add(middle_A(vertex.p), vertex.p[2], vertex.name);
-    }
-    if (builder.count() > 0 || !overlap || count_ == 0) return builder.finish();
-    const Corner lowest = lowest_corner();
-    return single_point(normal_A, middle_A(four(lowest.p.x(), lowest.p.y(), lowest.p.z())),
-                        std::min(lowest.p.z(), margin), margin, lowest.name);
-  }
+  /// rounding, the lowest corner of what is left speaks for it.
+  Manifold make_manifold(const FacePlane& plane, const Vec3& normal_A, bool overlap, double margin,
+                         double merge) const;
 
  private:
   static constexpr int kCapacity = 2 * kMaxFaceVertices + 2;
@@ -97,13 +79,7 @@ class ClipPolygon {
   };
   using Loop = std::array<Vertex, kCapacity>;
   /// Of what is left.
-  Corner lowest_corner() const {
-    Corner lowest = corner(0);
-    for (int i = 1; i < count_; ++i) {
-      if (corner(i).p.z() < lowest.p.z()) lowest = corner(i);
-    }
-    return lowest;
-  }
+  Corner lowest_corner() const;
   static void continue_along(const ClipSide& side, Vertex& vertex);
   std::uint32_t name_meeting(const Vertex& edge, const ClipSide& side) const;
 

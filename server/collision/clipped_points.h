@@ -11,8 +11,7 @@ namespace tumble {
 
 /// Where the edge from p to q crosses a side that they are `outside` and `next_outside` of [m]; false if they lie on one
 /// side, or as good as on it.
-template <typename Point>
-bool cross_side(const Point& p, const Point& q, double outside, double next_outside, Point& crossing) {
+inline bool cross_side(const Four& p, const Four& q, double outside, double next_outside, Four& crossing) {
   const double rise = next_outside - outside;
   crossing = p + (outside / -rise) * (q - p);
   return outside * next_outside < 0.0 && std::abs(rise) > ContactTolerance::kNoCrossing;

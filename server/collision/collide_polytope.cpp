@@ -90,8 +90,7 @@ Manifold clip_faces(const PlacedFace& reference, const PlacedFace& incident, boo
   }
   polygon.close();
   cut_by_sides(reference, plane, tolerance.inside, polygon);
-  const auto middle_A = [&](const Four& p) { return plane.middle_A(p); };
-  return polygon.make_manifold(middle_A, facet.normal_A, facet.separation <= 0.0, margin, tolerance.merge);
+  return polygon.make_manifold(plane, facet.normal_A, facet.separation <= 0.0, margin, tolerance.merge);
 }
 
 /// The edges of A and B that cross, in A's frame.

@@ -212,12 +212,12 @@ void drop_collinear(std::vector<std::vector<std::uint32_t>>& loops, std::size_t 
 }  // namespace
 
 Lowest scan_lowest(std::span<const Vec3> vertices, const Vec3& d) {
-  std::array<double, kScannedVertices> heights{};
+  std::array<double, kScannedVertices> heights;
+  heights.fill(kInfinity);
   const double* const p = vertices.front().data();  // one after the other: this loop goes in packets
   for (std::size_t i = 0; i < vertices.size(); ++i) {
     heights[i] = d.x() * p[3 * i] + d.y() * p[3 * i + 1] + d.z() * p[3 * i + 2];
   }
-  for (std::size_t i = vertices.size(); i % 4 != 0; ++i) heights[i] = kInfinity;
   const auto four_from = [&](std::size_t i) {
     return Four{heights[i], heights[i + 1], heights[i + 2], heights[i + 3]};
   };

@@ -31,7 +31,7 @@ constexpr double kNoArea = 1e-9;
 constexpr double kLongestStep = 0.3, kLeap = 0.2;  // [rad]
 /// Newton's method squares its error: a step this short is the last [rad].
 constexpr double kConverged = 1e-8;
-/// cos of 0.35 rad: how far around an optimum a positive curvature at both ends says there is none in between.
+/// cos of 0.35 rad: how far around an optimum a positive curvature on the way says that there is none in between.
 constexpr double kBasin = 0.94;
 /// Share of the size by which the polytope may lie inside the shapes where its points still say where they meet.
 constexpr double kCoarse = 1e-6;
@@ -115,7 +115,6 @@ class Search {
   bool falls_towards_best(const Reach& reach) const;
   template <typename Bends>
   bool is_one_valley(const Vec3& n, const Bends& bends) const;
-  bool ridge_bends_up(const Vec3& n) const;
   bool is_of_best_valley(const Vec3& n) const;
   bool is_furthest(const CandidateDirection& candidate) const;
   enum class Descent { nowhere, under_way, arrived };
@@ -384,17 +383,14 @@ bool Search::is_one_valley(const Vec3& n, const Bends& bends) const {
   return true;
 }
 
-/// Along the best direction's ridge, next to n.
-bool Search::ridge_bends_up(const Vec3& n) const {
-  const std::optional<Ridge> ridge = ridge_at(best_, n);
-  return ridge && ridge->second > 0.0;
-}
-
 /// From n to the best direction, which a search from there has found again.
 bool Search::is_of_best_valley(const Vec3& n) const {
   if (best_.count > 2) return true;
-  return best_.count == 2 ? is_one_valley(n, [&](const Vec3& m) { return ridge_bends_up(m); })
-                          : is_one_valley(n, [&](const Vec3& m) { return bends_up(best_.pieces[0], m); });
+  return is_one_valley(n, [&](const Vec3& m) {
+    if (best_.count == 1) return bends_up(best_.pieces[0], m);
+    const std::optional<Ridge> ridge = ridge_at(best_, m);
+    return ridge && ridge->second > 0.0;
+  });
 }
 
 /// Whether the reach of a piece has a minimum's curvature along n, up to the slack [m].

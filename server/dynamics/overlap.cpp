@@ -201,7 +201,7 @@ OverlapReport Projection::solve() {
 void Projection::store(OverlapReport& report) {
   double turn = 0.0;
   for (const Vec6& dx : dx_) turn = std::max(turn, dx.tail<3>().norm());
-  const double share = std::min(1.0, kMostTurn / turn);
+  const double share = turn > kMostTurn ? kMostTurn / turn : 1.0;
   for (std::size_t i = 0; i < problem_.bodies.size(); ++i) {
     SolverBody& body = problem_.bodies[i];
     if (body.inv_mass == 0.0) continue;

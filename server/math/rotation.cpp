@@ -1,4 +1,4 @@
-// See rotation.h. The Horner order is fixed: a different order is a different function to the last bit.
+// See rotation.h. The order of every sum is fixed: another order is another function to the last bit.
 #include "math/rotation.h"
 
 #include <array>

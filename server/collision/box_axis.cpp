@@ -2,11 +2,9 @@
 // separate more.
 #include "collision/box_axis.h"
 
-#include <array>
 #include <utility>
 
 #include "collision/segment.h"
-#include "math/four.h"
 #include "math/rotation.h"
 
 namespace tumble {
@@ -19,31 +17,36 @@ constexpr double kNearlyParallel = 1e-6;
 constexpr double kAxisTie = 1e-14;
 
 BoxAxis find_face_axis(const BoxPair& pair, double tie) {
-  const Vec3 t_B = pair.R.transpose() * pair.t;
-  const Vec3 a_axes = pair.t.cwiseAbs() - (pair.a + pair.R_abs * pair.b);
-  const Vec3 b_axes = t_B.cwiseAbs() - (pair.b + pair.R_abs.transpose() * pair.a);
+  const Vec3 &a = pair.a, &b = pair.b, &t = pair.t;
+  const auto column_abs = [&](int j) { return absolute(four(pair.R(0, j), pair.R(1, j), pair.R(2, j))); };
+  const Four a_axes =
+      absolute(four(t.x(), t.y(), t.z())) -
+      (four(a.x(), a.y(), a.z()) + b.x() * column_abs(0) + b.y() * column_abs(1) + b.z() * column_abs(2));
+  const Four b_axes = absolute(four(pair.t_B.x(), pair.t_B.y(), pair.t_B.z())) -
+                      (four(b.x(), b.y(), b.z()) + a.x() * absolute(pair.rows[0]) +
+                       a.y() * absolute(pair.rows[1]) + a.z() * absolute(pair.rows[2]));
   int i = 0, j = 0;
   for (int k = 1; k < 3; ++k) {
     if (a_axes[k] > a_axes[i] + tie) i = k;
     if (b_axes[k] > b_axes[j] + tie) j = k;
   }
   if (b_axes[j] > a_axes[i] + tie) {
-    return {b_axes[j], std::copysign(1.0, t_B[j]) * pair.R.col(j), BoxAxis::Kind::face_b, 0, j};
+    return {b_axes[j], std::copysign(1.0, pair.t_B[j]), BoxAxis::Kind::face_b, 0, j};
   }
-  return {a_axes[i], std::copysign(1.0, pair.t[i]) * Vec3::Unit(i), BoxAxis::Kind::face_a, i, 0};
+  return {a_axes[i], std::copysign(1.0, pair.t[i]), BoxAxis::Kind::face_a, i, 0};
 }
 
-/// Separation along n = e_i x r_j / length, with |n . e_i| and |n . r_j| (zero but for rounding) counted if `honest`.
+/// Separation along n = scale e_i x r_j, unit, with |n . e_i| and |n . r_j| (zero but for rounding) counted if `honest`.
 template <int i, int j>
-BoxAxis evaluate_edge_axis(const BoxPair& pair, double length, bool honest) {
-  const Vec3 n = Vec3::Unit(i).cross(pair.R.col(j)) / length;
+BoxAxis evaluate_edge_axis(const BoxPair& pair, double scale, bool honest) {
+  const Vec3 n = scale * Vec3::Unit(i).cross(pair.R.col(j));
   const double centre = n.dot(pair.t);
   double extents = 0.0;
   for (int k = 0; k < 3; ++k) {
     if (k != i || honest) extents += pair.a[k] * std::abs(n[k]);
     if (k != j || honest) extents += pair.b[k] * std::abs(n.dot(pair.R.col(k)));
   }
-  return {std::abs(centre) - extents, std::copysign(1.0, centre) * n, BoxAxis::Kind::edges, i, j};
+  return {std::abs(centre) - extents, std::copysign(scale, centre), BoxAxis::Kind::edges, i, j};
 }
 
 /// Whether scaled / sqrt(length2) > floor, without the root; may say yes within rounding.
@@ -57,12 +60,11 @@ bool may_exceed(double scaled, double length2, double floor) {
 /// `at_least` but for rounding, or is too short to say.
 struct Crossings {
   Crossings(const BoxPair& pair, double at_least) {
-    const auto row = [&](int i) { return four(pair.R(i, 0), pair.R(i, 1), pair.R(i, 2)); };
-    const std::array<Four, 3> R = {row(0), row(1), row(2)};
+    const std::array<Four, 3>& R = pair.rows;
     const std::array<Four, 3> R_abs = {absolute(R[0]), absolute(R[1]), absolute(R[2])};
     const Four b = four(pair.b.x(), pair.b.y(), pair.b.z());
     const Four b1 = rotated_three<1>(b), b2 = rotated_three<2>(b);
-    const double limit = at_least - kAxisTie * (pair.a.sum() + pair.b.sum());
+    const double limit = at_least - kAxisTie * pair.size;
     const Four limit2 = four(limit * std::abs(limit));
     const auto evaluate = [&]<std::size_t i>(std::integral_constant<std::size_t, i>) {
       // e_i x r_j = (0, -R(i2, j), R(i1, j)) in the cyclic order of i; its products with r_j1, r_j2 are entries of R.
@@ -94,7 +96,7 @@ void try_edge_axis(const BoxPair& pair, double scaled, double at_least, BoxAxis&
   const bool honest = length2 < kNearlyParallel;
   if (!honest && !may_exceed(scaled, length2, floor)) return;
   if (length2 < kParallel) return;
-  const BoxAxis axis = evaluate_edge_axis<i, j>(pair, std::sqrt(length2), honest);
+  const BoxAxis axis = evaluate_edge_axis<i, j>(pair, 1.0 / std::sqrt(length2), honest);
   if (axis.separation > best.separation) best = axis;
 }
 
@@ -118,10 +120,12 @@ BoxPair::BoxPair(const Box& box_a, const Box& box_b, const Pose& X_AB)
       b(box_b.half_extents),
       t(X_AB.p),
       R(rotation_matrix(X_AB.q)),
-      R_abs(R.cwiseAbs()) {}
+      rows{four(R(0, 0), R(0, 1), R(0, 2)), four(R(1, 0), R(1, 1), R(1, 2)), four(R(2, 0), R(2, 1), R(2, 2))},
+      t_B(R.transpose() * t),
+      size(a.sum() + b.sum()) {}
 
 BoxAxis find_axis(const BoxPair& pair, double margin) {
-  const double tie = kAxisTie * (pair.a.sum() + pair.b.sum());
+  const double tie = kAxisTie * pair.size;
   const BoxAxis face = find_face_axis(pair, tie);
   if (face.separation > margin) return face;
   const BoxAxis edges = find_edge_axis(pair, margin, face.separation + tie);

@@ -1,245 +1,327 @@
-// See box_faces.h. Sutherland-Hodgman with ContactTolerance's rules, on a fixed number of corners.
+// See box_faces.h. The names of all points are known beforehand.
 #include "collision/box_faces.h"
 
 #include <algorithm>
+#include <bit>
+#include <cstddef>
 
-#include "collision/clipped_points.h"
 #include "collision/feature_name.h"
+#include "collision/rectangle_clip.h"
 
 namespace tumble {
 namespace {
 
-/// The edge along axis k that ends in this corner.
-constexpr std::uint16_t edge_of(std::uint32_t k, std::uint32_t corner) {
-  return static_cast<std::uint16_t>(8 * k + (corner & ~(1u << k)));
+/// Features of a box: its twelve edges, each by the axis it lies along and the corner it starts from, its corners, and its
+/// inside for a point that only the other body names.
+constexpr std::uint8_t edge_at(std::uint32_t axis, std::uint32_t corner) {
+  return static_cast<std::uint8_t>(8 * axis + (corner & ~(1u << axis)));
 }
-constexpr std::uint16_t kEdgeIds = 24;
+constexpr std::uint8_t kFirstCorner = 24, kInside = 32, kFeatures = 33;
+constexpr std::uint8_t corner_at(std::uint32_t corner) {
+  return static_cast<std::uint8_t>(kFirstCorner + corner);
+}
 
-/// Names of corner i of A (0) or B (1), and of A's edge i with B's edge j.
-constexpr auto kCornerNames = [] {
-  std::array<std::array<std::uint32_t, 8>, 2> names{};
-  for (std::uint32_t i = 0; i < 8; ++i)
-    names[0][i] = name_vertex(true, i), names[1][i] = name_vertex(false, i);
-  return names;
-}();
-constexpr auto kCrossingNames = [] {
-  std::array<std::array<std::uint32_t, kEdgeIds>, kEdgeIds> names{};
-  for (std::uint32_t i = 0; i < kEdgeIds; ++i) {
-    for (std::uint32_t j = 0; j < kEdgeIds; ++j) {
-      const std::uint32_t a = i % 8, b = j % 8;
-      names[i][j] = name_crossing(a, a | 1u << i / 8, b, b | 1u << j / 8);
-    }
+constexpr std::uint32_t name_of(std::uint32_t a, std::uint32_t b) {
+  if (a >= kFirstCorner && a < kInside) return name_vertex(true, a - kFirstCorner);
+  if (b >= kFirstCorner && b < kInside) return name_vertex(false, b - kFirstCorner);
+  return name_crossing(a % 8, a % 8 | 1u << a / 8 % 3, b % 8, b % 8 | 1u << b / 8 % 3);
+}
+/// Of a feature of A and one of B.
+constexpr auto kNames = [] {
+  std::array<std::array<std::uint32_t, kFeatures>, kFeatures> names{};
+  for (std::uint32_t a = 0; a < kFeatures; ++a) {
+    for (std::uint32_t b = 0; b < kFeatures; ++b) names[a][b] = name_of(a, b);
   }
   return names;
 }();
 
-/// The plane of the reference face in its box's frame: x, y along the box's axes k + 1 and k + 2 (cyclic), z outward; as
-/// FacePlane, but its axes need no products. Sides 0 to 3 are +x, +y, -x, -y, seen from outside.
-struct BoxFacePlane {
-  BoxFacePlane(const BoxFace& face, const Vec3& h, const Vec3& normal)
-      : k(face.k),
-        k1((k + 1) % 3),
-        k2((k + 2) % 3),
-        height(face.sign * h[k]),
-        h1(h[k1]),
-        h2(h[k2]),
-        n1(normal[k1]),
-        n2(normal[k2]),
-        nk(normal[k]),
-        per_n(1.0 / nk) {}
+/// Corner of a box across axis k on its upper or lower side, on the upper one of axis k + 1, k + 2 or not (cyclic).
+constexpr std::uint32_t corner_of(std::uint32_t k, bool upper, bool upper1, bool upper2) {
+  return (upper ? 1u << k : 0u) | (upper1 ? 1u << (k + 1) % 3 : 0u) | (upper2 ? 1u << (k + 2) % 3 : 0u);
+}
 
-  /// Of the difference of two points; of a point, less the face's height along k.
-  Vec3 to_plane(const Vec3& d) const {
-    const double z = d[k] * per_n;
-    return {d[k1] - z * n1, d[k2] - z * n2, z};
+/// Of a reference face across axis k, x and y along the axes k + 1 and k + 2: its parts as RectangleClip numbers them.
+using ReferenceFeatures = std::array<std::uint8_t, 9>;
+constexpr ReferenceFeatures reference_features(std::uint32_t k, bool upper) {
+  const std::array<std::uint32_t, 4> corners = {
+      corner_of(k, upper, true, true), corner_of(k, upper, false, true), corner_of(k, upper, false, false),
+      corner_of(k, upper, true, false)};
+  const std::uint32_t k1 = (k + 1) % 3, k2 = (k + 2) % 3;
+  return {edge_at(k2, corners[0]), edge_at(k1, corners[1]), edge_at(k2, corners[2]),
+          edge_at(k1, corners[3]), corner_at(corners[0]),   corner_at(corners[1]),
+          corner_at(corners[2]),   corner_at(corners[3]),   kInside};
+}
+
+/// Of an incident face, e1 along axis k + 1, turned round on the lower side, and e2 along k + 2: what the places of
+/// RectangleClip lie on.
+using IncidentFeatures = std::array<std::uint8_t, 16>;
+constexpr IncidentFeatures incident_features(std::uint32_t k, bool upper) {
+  const std::array<std::uint32_t, 4> corners = {
+      corner_of(k, upper, !upper, false), corner_of(k, upper, upper, false), corner_of(k, upper, upper, true),
+      corner_of(k, upper, !upper, true)};
+  const std::uint32_t k1 = (k + 1) % 3, k2 = (k + 2) % 3;
+  const std::array<std::uint8_t, 4> edges = {edge_at(k1, corners[0]), edge_at(k2, corners[1]),
+                                             edge_at(k1, corners[2]), edge_at(k2, corners[3])};
+  IncidentFeatures features{};
+  for (std::size_t i = 0; i < 4; ++i) {
+    features[i] = corner_at(corners[i]);
+    features[4 + i] = features[8 + i] = edges[i];
+    features[12 + i] = kInside;
   }
-  /// The middle between such a point and its foot on the plane. Put in its place: what is written coordinate by coordinate
-  /// and then copied as a whole waits for the writing to be over.
-  void put_middle(const Four& p, Vec3& middle) const {
-    const double half = 0.5 * p[2];
-    middle[k] = half * nk + height;
-    middle[k1] = half * n1 + p[0];
-    middle[k2] = half * n2 + p[1];
-  }
-  /// How far p lies outside of a side [m].
-  template <std::size_t side>
-  double outside(const Four& p) const {
-    return (side < 2 ? p[side % 2] : -p[side % 2]) - (side % 2 == 0 ? h1 : h2);
-  }
+  return features;
+}
 
-  int k, k1, k2;
-  double height, h1, h2;
-  double n1, n2, nk;  ///< Contact normal away from the box, unit, near the face's.
-  double per_n;
-};
+constexpr auto kReferenceFeatures = [] {
+  std::array<std::array<ReferenceFeatures, 2>, 3> features{};
+  for (std::uint32_t k = 0; k < 3; ++k)
+    features[k] = {reference_features(k, false), reference_features(k, true)};
+  return features;
+}();
+constexpr auto kIncidentFeatures = [] {
+  std::array<std::array<IncidentFeatures, 2>, 3> features{};
+  for (std::uint32_t k = 0; k < 3; ++k)
+    features[k] = {incident_features(k, false), incident_features(k, true)};
+  return features;
+}();
 
-/// Side s of the reference face is one of its box's edges and ends in corner heads[s], where side s + 1 starts.
-struct SideNames {
-  SideNames(const BoxFacePlane& plane) {
-    const auto along1 = static_cast<std::uint32_t>(plane.k1), along2 = static_cast<std::uint32_t>(plane.k2);
-    const std::uint32_t bit1 = 1u << along1, bit2 = 1u << along2,
-                        base = plane.height > 0.0 ? 1u << plane.k : 0u;
-    heads = {base | bit1 | bit2, base | bit2, base, base | bit1};
-    edges = {edge_of(along2, heads[0]), edge_of(along1, heads[1]), edge_of(along2, heads[2]),
-             edge_of(along1, heads[3])};
-  }
-  std::array<std::uint32_t, 4> heads, edges;
-};
+template <typename Features>
+const Features& features_of(const std::array<std::array<Features, 2>, 3>& features, const BoxFace& face) {
+  return features[static_cast<std::size_t>(face.k)][face.sign > 0.0];
+}
 
-/// The incident face, seen from the reference face.
-struct SeenFace {
-  /// R, t: pose of the incident box in the reference's frame, h its half extents.
-  SeenFace(const BoxFacePlane& plane, const BoxFace& face, const Mat3& R, const Vec3& t, const Vec3& h) {
-    const int k = face.k, k1 = (k + 1) % 3, k2 = (k + 2) % 3;
-    Vec3 centre = t + (face.sign * h[k]) * R.col(k);
-    centre[plane.k] -= plane.height;
-    const Vec3 middle = plane.to_plane(centre);
-    const Vec3 e1 = plane.to_plane(face.sign * h[k1] * R.col(k1)), e2 = plane.to_plane(h[k2] * R.col(k2));
-    const Four m = four(middle.x(), middle.y(), middle.z()), f1 = four(e1.x(), e1.y(), e1.z()),
-               f2 = four(e2.x(), e2.y(), e2.z());
-    corners = {m - f1 - f2, m + f1 - f2, m + f1 + f2, m - f1 + f2};
-    const double reach1 = std::abs(e1.x()) + std::abs(e2.x()), reach2 = std::abs(e1.y()) + std::abs(e2.y());
-    furthest = {middle.x() + reach1, middle.y() + reach2, reach1 - middle.x(), reach2 - middle.y()};
-  }
-  /// Whether a corner may be further than the tolerance [m] beside a side.
-  template <std::size_t side>
-  bool is_cut(const BoxFacePlane& plane, double tolerance) const {
-    return furthest[side] > (side % 2 == 0 ? plane.h1 : plane.h2) + tolerance;
-  }
+/// The two boxes in the order reference, incident, in the reference's frame.
+struct OrderedBoxes {
+  OrderedBoxes(const BoxPair& pair, bool reference_is_a)
+      : reference(reference_is_a ? pair.a : pair.b),
+        incident(reference_is_a ? pair.b : pair.a),
+        R_(pair.R.data()),
+        per_row_(reference_is_a ? 1 : 3),
+        per_column_(reference_is_a ? 3 : 1),
+        t_(reference_is_a ? pair.t : pair.t_B),
+        sign_(reference_is_a ? 1.0 : -1.0) {}
 
-  std::array<Four, 4> corners;     ///< Counter-clockwise from outside.
-  std::array<double, 4> furthest;  ///< No corner is further out towards a side than this.
-};
+  /// Pose of the incident box.
+  double R(int i, int j) const { return R_[per_row_ * i + per_column_ * j]; }
+  double t(int i) const { return sign_ * t_[i]; }
 
-/// A corner of what is left of the incident face over the reference face.
-struct ClippedCorner {
-  Four p;
-  std::uint32_t name;
-  std::uint32_t edge;  ///< That starts here: of the incident box, or kEdgeIds + a side of the reference face.
-};
-
-/// A cut adds no more than one corner to a convex face, half of all if rounding made it anything else: 4, 6, 9, 13, 19.
-constexpr std::size_t kClippedCorners = 19;
-using ClippedLoop = std::array<ClippedCorner, kClippedCorners>;
-
-/// Cuts away what is further than the tolerance [m] beside the reference face.
-class FaceClip {
- public:
-  FaceClip(const BoxFacePlane& plane, bool reference_is_a, const BoxFace& incident, const SeenFace& seen,
-           double tolerance)
-      : plane_(plane), names_(plane), reference_is_a_(reference_is_a), tolerance_(tolerance) {
-    const auto along1 = static_cast<std::uint16_t>((incident.k + 1) % 3),
-               along2 = static_cast<std::uint16_t>((incident.k + 2) % 3);
-    const bool up = incident.sign > 0.0;
-    const std::uint32_t side = up ? 1u << incident.k : 0u, bit1 = 1u << along1, bit2 = 1u << along2;
-    const std::uint32_t first = up ? side : side | bit1, second = first ^ bit1;
-    const auto& names = kCornerNames[reference_is_a];
-    loops_[0][0] = {seen.corners[0], names[first], edge_of(along1, first)};
-    loops_[0][1] = {seen.corners[1], names[second], edge_of(along2, second)};
-    loops_[0][2] = {seen.corners[2], names[second | bit2], edge_of(along1, second)};
-    loops_[0][3] = {seen.corners[3], names[first | bit2], edge_of(along2, first)};
-  }
-
-  void cut(const SeenFace& seen) {
-    cut_side<0>(seen);
-    cut_side<1>(seen);
-    cut_side<2>(seen);
-    cut_side<3>(seen);
-  }
-
-  // What is left.
-  std::size_t count() const { return count_; }
-  const Four& place(std::size_t i) const { return loops_[current_][i].p; }
-  std::uint32_t name(std::size_t i) const { return loops_[current_][i].name; }
+  const Vec3 &reference, &incident;  ///< Half extents.
 
  private:
-  template <std::uint32_t side>
-  void cut_side(const SeenFace& seen);
-  std::uint32_t name_meeting(std::uint32_t edge, std::uint32_t side) const;
-
-  const BoxFacePlane& plane_;
-  const SideNames names_;
-  const bool reference_is_a_;
-  const double tolerance_;
-  std::size_t count_ = 4, current_ = 0;
-  std::array<ClippedLoop, 2> loops_;
+  const double* R_;
+  int per_row_, per_column_;
+  const Vec3& t_;
+  double sign_;
 };
 
-std::uint32_t FaceClip::name_meeting(std::uint32_t edge, std::uint32_t side) const {
-  if (edge >= kEdgeIds) {
-    // Two sides meet in the reference's corner, unless all between them was cut away.
-    const bool after = edge - kEdgeIds == (side + 1) % 4;
-    return kCornerNames[!reference_is_a_][names_.heads[after ? side : (side + 3) % 4]];
-  }
-  const std::uint32_t of_side = names_.edges[side];
-  return reference_is_a_ ? kCrossingNames[of_side][edge] : kCrossingNames[edge][of_side];
+/// The incident face over the reference face's plane: x, y along the reference box's axes k + 1 and k + 2 (cyclic), from
+/// the middle of its face; z the distance to there along the contact normal n (unit, in its frame).
+Parallelogram see_face(const OrderedBoxes& boxes, const BoxFace& reference, const BoxFace& incident,
+                       const Vec3& n) {
+  const int k = reference.k, k1 = next_axis(k), k2 = next_axis(k1);
+  const int l = incident.k, l1 = next_axis(l), l2 = next_axis(l1);
+  const double per_n = 1.0 / n[k];
+  const auto to_plane = [&](double x, double y, double height) {
+    const double z = height * per_n;
+    return Vec3(x - z * n[k1], y - z * n[k2], z);
+  };
+  const auto along = [&](int axis, double reach) {
+    return to_plane(reach * boxes.R(k1, axis), reach * boxes.R(k2, axis), reach * boxes.R(k, axis));
+  };
+  const double reach = incident.sign * boxes.incident[l];
+  return {to_plane(boxes.t(k1) + reach * boxes.R(k1, l), boxes.t(k2) + reach * boxes.R(k2, l),
+                   boxes.t(k) + reach * boxes.R(k, l) - reference.sign * boxes.reference[k]),
+          along(l1, incident.sign * boxes.incident[l1]), along(l2, boxes.incident[l2])};
 }
 
-template <std::uint32_t side>
-void FaceClip::cut_side(const SeenFace& seen) {
-  if (!seen.is_cut<side>(plane_, tolerance_)) return;
-  const ClippedLoop& from = loops_[current_];
-  ClippedLoop& to = loops_[1 - current_];
-  std::size_t n = 0;
-  double outside = plane_.outside<side>(from[0].p);
-  for (std::size_t i = 0; i < count_; ++i) {
-    const ClippedCorner &corner = from[i], &next = from[i + 1 == count_ ? 0 : i + 1];
-    const double next_outside = plane_.outside<side>(next.p);
-    const bool inside = outside <= tolerance_;
-    if (inside) to[n++] = corner;
-    if (inside != (next_outside <= tolerance_)) {
-      Four p;
-      if (cross_side(corner.p, next.p, outside, next_outside, p))
-        to[n++] = {p, name_meeting(corner.edge, side), corner.edge};
-      // The loop leaves: what was kept last is where it turns onto the side.
-      if (inside) to[n - 1].edge = kEdgeIds + side;
-    }
-    outside = next_outside;
-  }
-  current_ = 1 - current_;
-  count_ = n;
-}
+/// Where a place over the plane lies in A.
+struct PlaneInA {
+  /// Vectors in A: where x = y = z = 0, the axes x and y, and the contact normal along which z is measured.
+  PlaneInA(const Vec3& o, const Vec3& u, const Vec3& v, const Vec3& n)
+      : origin{o.x(), o.y(), o.z(), 0.0},
+        along_x{u.x(), u.y(), u.z(), 0.0},
+        along_y{v.x(), v.y(), v.z(), 0.0},
+        along_z{0.5 * n.x(), 0.5 * n.y(), 0.5 * n.z(), 1.0} {}
 
-template <typename PutMiddleA>
-Manifold clip(const BoxFacePlane& plane, bool reference_is_a, const BoxFace& incident, const SeenFace& seen,
-              const PutMiddleA& put_middle_A, const Lying& lying) {
-  FaceClip left(plane, reference_is_a, incident, seen, lying.tolerance.inside);
-  left.cut(seen);
-  return collect_points(left, put_middle_A, lying);
-}
+  /// Half way between the place and the plane; the last lane is z.
+  Four middle(double x, double y, double z) const { return origin + x * along_x + y * along_y + z * along_z; }
+
+  Four origin, along_x, along_y, along_z;
+};
+
+/// What a manifold needs to know beside its corners.
+struct Lying {
+  Vec3 normal_A;
+  bool overlap;
+  double margin;
+  ContactTolerance tolerance;
+};
+
+/// Places that are left, as they lie in the plane; those that are not there lie far from all.
+class PlacesInPlane {
+ public:
+  void set(std::size_t i, double x, double y) { x_[i] = x, y_[i] = y; }
+
+  /// The least of all distances between two of them, along x or y whichever is more [m].
+  double closest() const {
+    const Four xa = load_four(&x_[0]), ya = load_four(&y_[0]), xb = load_four(&x_[4]), yb = load_four(&y_[4]);
+    Four nearest = four(kInfinity);
+    const auto compare = [&](const Four& x1, const Four& y1, const Four& x2, const Four& y2) {
+      nearest = smaller(larger(absolute(x1 - x2), absolute(y1 - y2)), nearest);
+    };
+    compare(xa, ya, xb, yb);
+    compare(xa, ya, rotated<1>(xa), rotated<1>(ya));
+    compare(xa, ya, rotated<2>(xa), rotated<2>(ya));
+    compare(xa, ya, rotated<1>(xb), rotated<1>(yb));
+    compare(xa, ya, rotated<2>(xb), rotated<2>(yb));
+    compare(xa, ya, rotated<3>(xb), rotated<3>(yb));
+    compare(xb, yb, rotated<1>(xb), rotated<1>(yb));
+    compare(xb, yb, rotated<2>(xb), rotated<2>(yb));
+    return least_lane(nearest)[0];
+  }
+
+ private:
+  using Coordinates = std::array<double, kMaxManifoldPoints>;
+  Coordinates x_ = {1e200, 2e200, 3e200, 4e200, 5e200, 6e200, 7e200, 8e200}, y_{};
+};
+
+/// What is left of the incident face over the reference face, and what its corners become.
+class ClippedFace {
+ public:
+  ClippedFace(const RectangleClip& clip, const PlaneInA& in_A, const BoxFace& reference,
+              const BoxFace& incident, bool reference_is_a)
+      : clip_(clip),
+        in_A_(in_A),
+        of_reference_(features_of(kReferenceFeatures, reference)),
+        of_incident_(features_of(kIncidentFeatures, incident)),
+        reference_is_a_(reference_is_a) {}
+
+  /// Everything up to the margin. If that is nothing although the bodies overlap, by rounding, the lowest corner of what is
+  /// left speaks for it.
+  Manifold make_manifold(const Lying& lying) const {
+    Manifold manifold;
+    manifold.normal_A = lying.normal_A;
+    const RectangleClip::Set near = clip_.corners_below(lying.margin);
+    if (!put_distinct(near, lying.tolerance.merge, manifold))
+      put_merged(near, lying.tolerance.merge, manifold);
+    if (manifold.count == 0 && lying.overlap) put_lowest(lying.margin, manifold);
+    return manifold;
+  }
+
+ private:
+  template <typename Do>
+  static void for_each(RectangleClip::Set set, const Do& call) {
+    for (; set != 0; set &= set - 1) call(static_cast<std::uint32_t>(std::countr_zero(set)));
+  }
+
+  // Of a bit in a set.
+  double x(std::uint32_t i) const { return clip_.places[i / 4].x[i % 4]; }
+  double y(std::uint32_t i) const { return clip_.places[i / 4].y[i % 4]; }
+  double z(std::uint32_t i) const { return clip_.places[i / 4].z[i % 4]; }
+  std::uint32_t name(std::uint32_t i) const {
+    const std::uint8_t reference = of_reference_[static_cast<std::size_t>(clip_.on[i / 4][i % 4])],
+                       incident = of_incident_[i];
+    return reference_is_a_ ? kNames[reference][incident] : kNames[incident][reference];
+  }
+
+  void put(std::uint32_t i, ManifoldPoint& point) const {
+    // At once: what is written coordinate by coordinate and then copied as a whole waits for the writing to be over.
+    static_assert(offsetof(ManifoldPoint, separation) == 3 * sizeof(double));
+    store_four(in_A_.middle(x(i), y(i), z(i)), point.p_A.data());
+    point.feature = name(i);
+  }
+
+  /// False: too many, or some so close to each other that they might be one.
+  bool put_distinct(RectangleClip::Set set, double merge, Manifold& manifold) const {
+    if (std::popcount(set) > kMaxManifoldPoints) return false;
+    PlacesInPlane seen;
+    std::size_t count = 0;
+    for_each(set, [&](std::uint32_t i) {
+      seen.set(count, x(i), y(i));
+      put(i, manifold.points[count++]);
+    });
+    manifold.count = static_cast<int>(count);
+    // In the plane they are no further apart than in space but for the tilt of the normal.
+    constexpr double kTilted = 1.25;
+    return seen.closest() > kTilted * merge;
+  }
+
+  void put_merged(RectangleClip::Set set, double merge, Manifold& manifold) const {
+    manifold.count = 0;
+    for_each(set, [&](std::uint32_t i) {
+      if (manifold.count == kMaxManifoldPoints) return;
+      ManifoldPoint point;
+      put(i, point);
+      manifold.count = add_or_merge(manifold.points.data(), manifold.count, merge, point);
+    });
+  }
+
+  void put_lowest(double margin, Manifold& manifold) const {
+    const RectangleClip::Set left = clip_.corners_below(kInfinity);
+    if (left == 0) return;
+    auto lowest = static_cast<std::uint32_t>(std::countr_zero(left));
+    for_each(left, [&](std::uint32_t i) {
+      if (z(i) < z(lowest)) lowest = i;
+    });
+    manifold.count = 1;
+    put(lowest, manifold.points[0]);
+    manifold.points[0].separation = std::min(manifold.points[0].separation, margin);
+  }
+
+  const RectangleClip& clip_;
+  const PlaneInA& in_A_;
+  const ReferenceFeatures& of_reference_;
+  const IncidentFeatures& of_incident_;
+  const bool reference_is_a_;
+};
 
 }  // namespace
 
 BoxFace BoxFace::towards(const Vec3& d) {
-  int k = 0;
-  const double cosine = d.cwiseAbs().maxCoeff(&k);
-  return {k, std::copysign(1.0, d[k]), cosine};
+  const double x = std::abs(d.x()), y = std::abs(d.y()), z = std::abs(d.z());
+  const double most = std::max(x, std::max(y, z));
+  const int k = most == x ? 0 : (most == y ? 1 : 2);
+  return {k, std::copysign(1.0, d[k]), most};
 }
 
-bool lie_face_to_face(const BoxFace& face_a, const BoxFace& face_b) {
-  return std::min(face_a.cosine, face_b.cosine) > ContactTolerance::kFaceToFace;
-}
-
-Manifold clip_faces(const BoxPair& pair, const BoxAxis& axis, const BoxFace& face_a, const BoxFace& face_b,
-                    bool reference_is_a, double margin) {
-  const double width = std::min(face_a.width(pair.a), face_b.width(pair.b));
-  const Lying lying{axis.normal_A, axis.separation <= 0.0, margin,
-                    ContactTolerance::of(width, lie_face_to_face(face_a, face_b))};
-  if (reference_is_a) {
-    const BoxFacePlane plane(face_a, pair.a, axis.normal_A);
-    const SeenFace seen(plane, face_b, pair.R, pair.t, pair.b);
-    const auto put_middle_A = [&](const Four& p, Vec3& middle) { plane.put_middle(p, middle); };
-    return clip(plane, true, face_b, seen, put_middle_A, lying);
+FacingFaces::FacingFaces(const BoxPair& pair, const BoxAxis& axis) : normal_A(tumble::normal_A(pair, axis)) {
+  if (axis.kind == BoxAxis::Kind::face_a) {
+    towards_a_B = -axis.scale * pair.R.row(axis.i).transpose();
+    a = {axis.i, axis.scale, 1.0};
+    b = BoxFace::towards(towards_a_B);
+  } else if (axis.kind == BoxAxis::Kind::face_b) {
+    towards_a_B = -axis.scale * Vec3::Unit(axis.j);
+    a = BoxFace::towards(normal_A);
+    b = {axis.j, -axis.scale, 1.0};
+  } else {
+    towards_a_B = pair.R.transpose() * -normal_A;
+    a = BoxFace::towards(normal_A);
+    b = BoxFace::towards(towards_a_B);
   }
-  const Mat3 R_BA = pair.R.transpose();
-  const BoxFacePlane plane(face_b, pair.b, -(R_BA * axis.normal_A));
-  const SeenFace seen(plane, face_a, R_BA, -(R_BA * pair.t), pair.a);
-  const auto put_middle_A = [&](const Four& p, Vec3& middle) {
-    Vec3 middle_B;
-    plane.put_middle(p, middle_B);
-    middle = pair.R * middle_B + pair.t;
-  };
-  return clip(plane, false, face_a, seen, put_middle_A, lying);
+}
+
+void FacingFaces::see_along(const BoxPair& pair, const Vec3& n_A) {
+  normal_A = n_A;
+  towards_a_B = pair.R.transpose() * -n_A;
+}
+
+Manifold clip_faces(const BoxPair& pair, const FacingFaces& faces, double separation, bool reference_is_a,
+                    double margin) {
+  const BoxFace &reference = reference_is_a ? faces.a : faces.b,
+                &incident = reference_is_a ? faces.b : faces.a;
+  const int k = reference.k, k1 = next_axis(k), k2 = next_axis(k1);
+  const Vec3& h = reference_is_a ? pair.a : pair.b;
+  const Lying lying{
+      faces.normal_A, separation <= 0.0, margin,
+      ContactTolerance::of(std::min(faces.a.width(pair.a), faces.b.width(pair.b)), faces.lie_face_to_face())};
+  const RectangleClip clip(see_face(OrderedBoxes(pair, reference_is_a), reference, incident,
+                                    reference_is_a ? faces.normal_A : faces.towards_a_B),
+                           h[k1], h[k2], lying.tolerance.inside);
+  const double height = reference.sign * h[k];
+  const PlaneInA in_A =
+      reference_is_a
+          ? PlaneInA(height * Vec3::Unit(k), Vec3::Unit(k1), Vec3::Unit(k2), faces.normal_A)
+          : PlaneInA(pair.t + height * pair.R.col(k), pair.R.col(k1), pair.R.col(k2), -faces.normal_A);
+  return ClippedFace(clip, in_A, reference, incident, reference_is_a).make_manifold(lying);
 }
 
 }  // namespace tumble

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "collision/box_axis.h"
-#include "collision/manifold.h"
+#include "collision/manifold_builder.h"
 
 namespace tumble {
 
@@ -15,14 +15,25 @@ struct BoxFace {
 
   static BoxFace towards(const Vec3& d);
   /// Half of the narrower side of the face [m].
-  double width(const Vec3& h) const { return std::min(h[(k + 1) % 3], h[(k + 2) % 3]); }
+  double width(const Vec3& h) const { return std::min(h[next_axis(k)], h[next_axis(next_axis(k))]); }
 };
 
-/// Clips B's face against A's or the other way round, whichever `reference_is_a` says, along the axis.
-Manifold clip_faces(const BoxPair& pair, const BoxAxis& axis, const BoxFace& face_a, const BoxFace& face_b,
-                    bool reference_is_a, double margin);
+/// The faces of A and B that look at each other along an axis.
+struct FacingFaces {
+  FacingFaces(const BoxPair& pair, const BoxAxis& axis);
+  /// The same ones, seen along another direction: unit, from A to B.
+  void see_along(const BoxPair& pair, const Vec3& normal_A);
+  /// Whether both look along the contact normal up to 0.01 rad.
+  bool lie_face_to_face() const { return std::min(a.cosine, b.cosine) > ContactTolerance::kFaceToFace; }
 
-/// Whether both faces look along the contact normal up to 0.01 rad.
-bool lie_face_to_face(const BoxFace& face_a, const BoxFace& face_b);
+  BoxFace a, b;
+  Vec3 normal_A;     ///< Of the contact, unit, from A to B.
+  Vec3 towards_a_B;  ///< The same in B, from B to A.
+};
+
+/// Clips B's face against A's or the other way round, whichever `reference_is_a` says, along their normal. `separation` is
+/// that of the boxes along it [m].
+Manifold clip_faces(const BoxPair& pair, const FacingFaces& faces, double separation, bool reference_is_a,
+                    double margin);
 
 }  // namespace tumble

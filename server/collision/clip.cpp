@@ -3,10 +3,21 @@
 
 #include <algorithm>
 
-#include "collision/clipped_points.h"
 #include "collision/feature_name.h"
 
 namespace tumble {
+namespace {
+
+/// Where the edge from p to q crosses a side that they are `outside` and `next_outside` of [m]; false if they lie on one
+/// side, or as good as on it.
+bool cross_side(const Four& p, const Four& q, double outside, double next_outside, Four& crossing) {
+  const double rise = next_outside - outside;
+  crossing = p + (outside / -rise) * (q - p);
+  return outside * next_outside < 0.0 && std::abs(rise) > ContactTolerance::kNoCrossing;
+}
+
+}  // namespace
+
 void ClipPolygon::add_vertex(const Vec3& p, std::uint32_t vertex, std::uint32_t mark) {
   const std::uint32_t name = name_vertex(!reference_is_a_, vertex);
   Vertex& added = loops_[0][static_cast<std::size_t>(count_)];

@@ -19,109 +19,99 @@ struct BoxEdge {
   std::uint32_t tail, head;
 };
 BoxEdge edge_along(const Vec3& h, int i, const Vec3& d) {
-  const int k = i == 2 ? 0 : i + 1, l = 3 - i - k;
-  BoxEdge edge{Vec3::Zero(), 0, 0};
-  edge.centre[k] = std::copysign(h[k], d[k]);
-  edge.centre[l] = std::copysign(h[l], d[l]);
-  edge.tail = static_cast<std::uint32_t>(!std::signbit(d[k])) << k |
-              static_cast<std::uint32_t>(!std::signbit(d[l])) << l;
-  edge.head = edge.tail | 1u << i;
-  return edge;
+  const auto bit = [&](int k) { return static_cast<std::uint32_t>(!std::signbit(d[k])) << k; };
+  const std::uint32_t along = 1u << i, tail = (bit(0) | bit(1) | bit(2)) & ~along;
+  // By a product: what is written into one coordinate of three has to be waited for.
+  return {furthest_corner(h, d).cwiseProduct(Vec3::Ones() - Vec3::Unit(i)), tail, tail | along};
 }
 
-/// Edges of A and B that cross along an axis, in A's frame. `towards_a_B` is the axis in B, from B to A.
+/// Edges of A and B that cross along an axis, in A's frame.
 struct CrossingEdges {
-  CrossingEdges(const BoxPair& pair, const BoxAxis& axis, const Vec3& towards_a_B)
-      : edge_a(edge_along(pair.a, axis.i, axis.normal_A)),
-        edge_b(edge_along(pair.b, axis.j, towards_a_B)),
-        centre_b(pair.t + pair.R * edge_b.centre),
-        reach_a(pair.a[axis.i] * Vec3::Unit(axis.i)),
-        reach_b(pair.b[axis.j] * pair.R.col(axis.j)) {}
-  Segment a() const { return {edge_a.centre, reach_a}; }
-  Segment b() const { return {centre_b, reach_b}; }
+  CrossingEdges(const BoxPair& boxes, const BoxAxis& axis, const FacingFaces& faces)
+      : pair(boxes),
+        i(axis.i),
+        j(axis.j),
+        edge_a(edge_along(pair.a, i, faces.normal_A)),
+        edge_b(edge_along(pair.b, j, faces.towards_a_B)),
+        centre_b(pair.t + pair.R * edge_b.centre) {}
+  Segment a() const { return {edge_a.centre, pair.a[i] * Vec3::Unit(i)}; }
+  Segment b() const { return {centre_b, pair.b[j] * pair.R.col(j)}; }
   std::uint32_t name() const { return name_crossing(edge_a.tail, edge_a.head, edge_b.tail, edge_b.head); }
 
+  const BoxPair& pair;
+  int i, j;
   BoxEdge edge_a, edge_b;
-  Vec3 centre_b, reach_a, reach_b;
+  Vec3 centre_b;
 };
 
 /// sin^2 of the angle from which on edges cross in one point, whatever the tolerances.
 constexpr double kCrossing = 1e-2;
 
-Manifold cross_edges(const BoxPair& pair, const BoxAxis& axis, const Vec3& towards_a_B, double margin) {
-  const CrossingEdges edges(pair, axis, towards_a_B);
+Manifold cross_edges(const BoxPair& pair, const BoxAxis& axis, const FacingFaces& faces, double margin) {
+  const CrossingEdges edges(pair, axis, faces);
   // Where lines cross, a + s e_i and b + t r_j with e_i . r_j = cosine, their distance is the axis' separation.
   const Vec3 d = edges.centre_b - edges.edge_a.centre, along_b = pair.R.col(axis.j);
   const double cosine = pair.R(axis.i, axis.j), sine2 = 1.0 - cosine * cosine, along = d.dot(along_b);
   const double s = d[axis.i] - cosine * along, t = cosine * d[axis.i] - along;
   if (sine2 > kCrossing && std::abs(s) <= pair.a[axis.i] * sine2 && std::abs(t) <= pair.b[axis.j] * sine2) {
-    Vec3 middle_A = 0.5 * (edges.edge_a.centre + edges.centre_b + (t / sine2) * along_b);
-    middle_A[axis.i] += 0.5 * (s / sine2);
-    return single_point(axis.normal_A, middle_A, axis.separation, margin, edges.name());
+    const double half = 0.5 / sine2;
+    const Vec3 middle_A =
+        0.5 * (edges.edge_a.centre + edges.centre_b) + (half * t) * along_b + (half * s) * Vec3::Unit(axis.i);
+    return single_point(faces.normal_A, middle_A, axis.separation, margin, edges.name());
   }
   const ContactTolerance tolerance = ContactTolerance::of(std::min(pair.a.minCoeff(), pair.b.minCoeff()));
-  return make_segment_manifold({edges.a(), 0.0}, {edges.b(), 0.0}, axis.normal_A, margin, tolerance.merge,
+  return make_segment_manifold({edges.a(), 0.0}, {edges.b(), 0.0}, faces.normal_A, margin, tolerance.merge,
                                edges.name());
 }
-
-/// The faces of A and B that look at each other along an axis.
-struct FacingFaces {
-  FacingFaces(const BoxPair& pair, const BoxAxis& axis)
-      : towards_a_B(pair.R.transpose() * -axis.normal_A),
-        a(BoxFace::towards(axis.normal_A)),
-        b(BoxFace::towards(towards_a_B)) {}
-
-  Vec3 towards_a_B;  ///< The axis in B, from B to A.
-  BoxFace a, b;
-};
 
 Manifold make_manifold(const BoxPair& pair, const BoxAxis& axis, const FacingFaces& faces, double margin) {
   const bool flat_a = faces.a.cosine > ContactTolerance::kFlat,
              flat_b = faces.b.cosine > ContactTolerance::kFlat;
-  if (axis.kind == BoxAxis::Kind::edges && !(flat_a || flat_b))
-    return cross_edges(pair, axis, faces.towards_a_B, margin);
-  return clip_faces(pair, axis, faces.a, faces.b, axis.kind == BoxAxis::Kind::face_a || flat_a, margin);
+  if (axis.kind == BoxAxis::Kind::edges && !(flat_a || flat_b)) return cross_edges(pair, axis, faces, margin);
+  return clip_faces(pair, faces, axis.separation, axis.kind == BoxAxis::Kind::face_a || flat_a, margin);
 }
 
 /// How far the lowest corner of a contact along a face's normal lies beside that face; how far edges miss each other.
 void measure_overhang(const BoxPair& pair, const BoxAxis& axis, const FacingFaces& faces,
                       AxisContact& contact) {
   if (axis.kind == BoxAxis::Kind::edges) {
-    const CrossingEdges edges(pair, axis, faces.towards_a_B);
+    const CrossingEdges edges(pair, axis, faces);
     contact.overhang = distance_between(edges.a(), edges.b()) - axis.separation;
     contact.tilt = 1.0;
     return;
   }
   const auto beside = [](const Vec3& p, const Vec3& h, int k) {
-    return std::max(std::abs(p[(k + 1) % 3]) - h[(k + 1) % 3], std::abs(p[(k + 2) % 3]) - h[(k + 2) % 3]);
+    const int k1 = next_axis(k), k2 = next_axis(k1);
+    return std::max(std::abs(p[k1]) - h[k1], std::abs(p[k2]) - h[k2]);
   };
   const auto sine = [](const Vec3& n, int k) {
-    return std::sqrt(n[(k + 1) % 3] * n[(k + 1) % 3] + n[(k + 2) % 3] * n[(k + 2) % 3]);
+    const int k1 = next_axis(k), k2 = next_axis(k1);
+    return std::sqrt(n[k1] * n[k1] + n[k2] * n[k2]);
   };
-  const Vec3 n_B = pair.R.transpose() * axis.normal_A;
   if (axis.kind == BoxAxis::Kind::face_a) {
-    contact.overhang = beside(pair.t + pair.R * furthest_corner(pair.b, -n_B), pair.a, faces.a.k);
-    contact.tilt = sine(n_B, faces.b.k);
+    contact.overhang =
+        beside(pair.t + pair.R * furthest_corner(pair.b, faces.towards_a_B), pair.a, faces.a.k);
+    contact.tilt = sine(faces.towards_a_B, faces.b.k);
   } else {
-    const Vec3 corner = furthest_corner(pair.a, axis.normal_A);
+    const Vec3 corner = furthest_corner(pair.a, faces.normal_A);
     contact.overhang = beside(pair.R.transpose() * (corner - pair.t), pair.b, faces.b.k);
-    contact.tilt = sine(axis.normal_A, faces.a.k);
+    contact.tilt = sine(faces.normal_A, faces.a.k);
   }
 }
 
 /// The contact along the axis that separates most, by at most the margin.
-Manifold touch_along(const BoxPair& pair, const BoxAxis& axis, const Pose& X_AB, double margin,
-                     PairCache& cache) {
-  const FacingFaces faces(pair, axis);
+Manifold touch_along(const BoxPair& pair, const BoxAxis& axis, FacingFaces& faces, const Pose& X_AB,
+                     double margin, PairCache& cache) {
   Manifold manifold = make_manifold(pair, axis, faces, margin);
-  AxisContact contact{manifold, axis.separation, pair.a.norm() + pair.b.norm(),
-                      lie_face_to_face(faces.a, faces.b)};
+  AxisContact contact{manifold, axis.separation, pair.size, faces.lie_face_to_face()};
   if (contact.separation > 0.0 && contact.face_to_face) measure_overhang(pair, axis, faces, contact);
   if (touches_along_axis(contact)) return manifold;
   const ClosestContact closest =
       contact_of_closest_points(contact, Box{pair.a}, Box{pair.b}, X_AB, margin, cache);
   if (closest.lying) {
-    const BoxAxis across{closest.separation, closest.manifold.normal_A, axis.kind, axis.i, axis.j};
+    faces.see_along(pair, closest.manifold.normal_A);
+    BoxAxis across = axis;
+    across.separation = closest.separation;
     manifold = make_manifold(pair, across, faces, margin);
     set_deepest(manifold, closest.separation);
   } else {
@@ -135,10 +125,11 @@ Manifold touch_along(const BoxPair& pair, const BoxAxis& axis, const Pose& X_AB,
 Manifold collide_box_box(const Box& a, const Box& b, const Pose& X_AB, double margin, PairCache& cache) {
   const BoxPair pair(a, b, X_AB);
   const BoxAxis axis = find_axis(pair, margin);
-  cache.axis_A = axis.normal_A;
+  FacingFaces faces(pair, axis);
+  cache.axis_A = faces.normal_A;
   cache.gap = axis.separation;
   if (axis.separation > margin) return {};
-  return touch_along(pair, axis, X_AB, margin, cache);
+  return touch_along(pair, axis, faces, X_AB, margin, cache);
 }
 
 }  // namespace tumble

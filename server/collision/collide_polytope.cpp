@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "collision/clip.h"
-#include "collision/clipped_points.h"
 #include "collision/corner_contact.h"
 #include "collision/facet_search.h"
 #include "collision/feature_name.h"

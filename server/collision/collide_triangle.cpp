@@ -348,14 +348,20 @@ Manifold collide_triangle(const Shape& a, const TriangleSurface& b, std::uint32_
   };
   if (const auto* sphere = std::get_if<Sphere>(&a)) {
     const std::array<Vec3, 1> centre = {Vec3::Zero()};
-    return query({.vertices = centre, .neighbour_offsets = kPointOffsets}, sphere->radius);
+    FourVectors four;
+    put_in_fours(centre, &four);
+    return query({.vertices = centre, .neighbour_offsets = kPointOffsets, .vertex_fours = {&four, 1}},
+                 sphere->radius);
   }
   if (const auto* capsule = std::get_if<Capsule>(&a)) {
     const std::array<Vec3, 2> ends = {Vec3(0, 0, -capsule->half_length), Vec3(0, 0, capsule->half_length)};
+    FourVectors four;
+    put_in_fours(ends, &four);
     return query({.vertices = ends,
                   .edges = kSegmentEdges,
                   .neighbour_offsets = kSegmentOffsets,
                   .neighbours = kSegmentNeighbours,
+                  .vertex_fours = {&four, 1},
                   .radius = capsule->half_length},
                  capsule->radius);
   }

@@ -211,33 +211,37 @@ void drop_collinear(std::vector<std::vector<std::uint32_t>>& loops, std::size_t 
 
 }  // namespace
 
-Lowest scan_lowest(std::span<const Vec3> vertices, const Vec3& d) {
-  std::array<double, kScannedVertices> heights;
-  heights.fill(kInfinity);
-  const double* const p = vertices.front().data();  // one after the other: this loop goes in packets
-  for (std::size_t i = 0; i < vertices.size(); ++i) {
-    heights[i] = d.x() * p[3 * i] + d.y() * p[3 * i + 1] + d.z() * p[3 * i + 2];
+void put_in_fours(std::span<const Vec3> vertices, FourVectors* fours) {
+  for (std::size_t i = 0; i < (vertices.size() + 3) / 4 * 4; ++i) {
+    const Vec3& v = vertices[i < vertices.size() ? i : 0];
+    FourVectors& four = fours[i / 4];
+    four.x[i % 4] = v.x(), four.y[i % 4] = v.y(), four.z[i % 4] = v.z();
   }
-  const auto four_from = [&](std::size_t i) {
-    return Four{heights[i], heights[i + 1], heights[i + 2], heights[i + 3]};
-  };
-  // The first of the lowest in each of four lanes, then of these.
-  Four least = four_from(0);
-  FourFlags group{}, at{};
-  for (std::size_t i = 4; i < vertices.size(); i += 4) {
-    const Four next = four_from(i);
-    group += 1;
-    const FourFlags lower = next < least;
-    least = lower ? next : least;
-    at = lower ? group : at;
+}
+
+void put_in_fours(std::span<const ConvexHull::Face> faces, ConvexHull::FourFaces* fours) {
+  for (std::size_t i = 0; i < (faces.size() + 3) / 4 * 4; ++i) {
+    const ConvexHull::Face& face = faces[i < faces.size() ? i : 0];
+    ConvexHull::FourFaces& four = fours[i / 4];
+    four.normal.x[i % 4] = face.normal.x();
+    four.normal.y[i % 4] = face.normal.y();
+    four.normal.z[i % 4] = face.normal.z();
+    four.offset[i % 4] = face.offset;
   }
-  Lowest lowest{static_cast<std::uint32_t>(4 * at[0]), least[0]};
-  for (std::uint32_t lane = 1; lane < 4; ++lane) {
-    const auto vertex = static_cast<std::uint32_t>(4 * at[lane]) + lane;
-    if (least[lane] < lowest.height || (least[lane] == lowest.height && vertex < lowest.vertex))
-      lowest = {vertex, least[lane]};
-  }
-  return lowest;
+}
+
+void add_fours(ConvexHull& hull) {
+  hull.vertex_fours.resize((hull.vertices.size() + 3) / 4);
+  hull.face_fours.resize((hull.faces.size() + 3) / 4);
+  put_in_fours(hull.vertices, hull.vertex_fours.data());
+  put_in_fours(hull.faces, hull.face_fours.data());
+}
+
+Lowest scan_lowest(std::span<const FourVectors> vertices, const Vec3& d) {
+  const Four x = four(d.x()), y = four(d.y()), z = four(d.z());
+  FirstLowest lowest;
+  for (const FourVectors& v : vertices) lowest.look_at(x * v.x + y * v.y + z * v.z);
+  return {lowest.index(), lowest.value()};
 }
 
 double compute_width(const ConvexHull& hull, const ConvexHull::Face& face) {
@@ -277,6 +281,7 @@ void add_topology(ConvexHull& hull) {
     hull.centre += vertex / static_cast<double>(hull.vertices.size());
     hull.radius = std::max(hull.radius, vertex.norm());
   }
+  add_fours(hull);
 }
 
 ConvexHull build_convex_hull(const std::vector<Vec3>& points) {

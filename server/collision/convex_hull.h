@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "math/four.h"
 #include "math/types.h"
 
 namespace tumble {
@@ -22,6 +23,12 @@ struct ConvexHull {
     std::uint32_t left_face, right_face;  ///< Faces on either side; the loop of left_face runs tail -> head.
   };
 
+  /// Planes of four faces.
+  struct FourFaces {
+    FourVectors normal;
+    Four offset;
+  };
+
   std::vector<Vec3> vertices;  ///< [m], only points on the hull.
   std::vector<std::uint32_t> loops;
   std::vector<Face> faces;
@@ -31,10 +38,20 @@ struct ConvexHull {
   std::vector<std::uint32_t> edges_around;       ///< The edge to each of `neighbours`.
   Vec3 centre = Vec3::Zero();                    ///< Mean of the vertices [m].
   double radius = 0.0;                           ///< Largest |vertex| [m].
+  /// The vertices and faces once more, lane by lane; after the last one the first again.
+  std::vector<FourVectors> vertex_fours;
+  std::vector<FourFaces> face_fours;
 };
 
-/// Fills in edges, neighbours, edges around, widths, centre and radius from vertices, loops and faces.
+/// Fills in edges, neighbours, edges around, widths, centre, radius and fours from vertices, loops and faces.
 void add_topology(ConvexHull& hull);
+
+/// Fills in the fours from vertices and faces.
+void add_fours(ConvexHull& hull);
+
+/// The fours of vertices and of faces; there must be room for (count + 3) / 4 of them.
+void put_in_fours(std::span<const Vec3> vertices, FourVectors* fours);
+void put_in_fours(std::span<const ConvexHull::Face> faces, ConvexHull::FourFaces* fours);
 
 /// Of a face, the inradius of regular shapes [m].
 double compute_width(const ConvexHull& hull, const ConvexHull::Face& face);
@@ -48,8 +65,8 @@ struct Lowest {
   std::uint32_t vertex;
   double height;
 };
-/// Of at least one and at most kScannedVertices.
-Lowest scan_lowest(std::span<const Vec3> vertices, const Vec3& d);
+/// Of at least one.
+Lowest scan_lowest(std::span<const FourVectors> vertices, const Vec3& d);
 
 /// Hull of at least 4 points [m] that span a volume. Throws std::invalid_argument naming the cause and the point
 /// (fewer than 4 distinct points, non-finite coordinate, all in one plane within 1e-9 of their extent).

@@ -14,8 +14,8 @@ namespace {
 constexpr double kFacetTie = 1e-14;
 /// Share of B's radius: about a smaller disc a facet's neighbours are not told from it.
 constexpr double kLeastDisc = 1e-4;
-/// Faces of each body whose bounds are kept; those of larger hulls are computed again where needed.
-constexpr std::size_t kKeptFaces = 512;
+/// Fours of faces of each body whose bounds are kept; those of larger hulls are computed again where needed.
+constexpr std::size_t kKeptFours = 128;
 /// Edges of each side that are looked at together.
 constexpr std::size_t kBlock = 128;
 /// From so many pairs of edges on it pays to look for a better point against each edge.
@@ -52,16 +52,19 @@ class PointHeights {
   std::uint32_t measure(const Polytope& polytope, const Vec3& point) {
     polytope_ = &polytope;
     point_ = point;
-    std::uint32_t highest = 0;
-    double most = -kInfinity;
-    for (std::uint32_t i = 0; i < polytope.faces.size(); ++i) {
-      const double height = height_over(i);
-      if (i < kKeptFaces) heights_[i] = height;
-      if (height > most) highest = i, most = height;
+    const Four x = four(point.x()), y = four(point.y()), z = four(point.z());
+    FirstLowest deepest;
+    for (std::size_t i = 0; i < polytope.face_fours.size(); ++i) {
+      const ConvexHull::FourFaces& face = polytope.face_fours[i];
+      const Four depth = face.offset - (x * face.normal.x + y * face.normal.y + z * face.normal.z);
+      if (i < kKeptFours) store_four(-depth, &heights_[4 * i]);
+      deepest.look_at(depth);
     }
-    return highest;
+    return deepest.index();
   }
-  double operator[](std::size_t face) const { return face < kKeptFaces ? heights_[face] : height_over(face); }
+  double operator[](std::size_t face) const {
+    return face < 4 * kKeptFours ? heights_[face] : height_over(face);
+  }
 
  private:
   double height_over(std::size_t i) const {
@@ -69,7 +72,7 @@ class PointHeights {
   }
   const Polytope* polytope_ = nullptr;
   Vec3 point_ = Vec3::Zero();
-  std::array<double, kKeptFaces> heights_;
+  std::array<double, 4 * kKeptFours> heights_;
 };
 
 /// One body and what is known of it: two points of the other one, measured over its faces.

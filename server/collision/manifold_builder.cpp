@@ -38,11 +38,11 @@ Manifold ManifoldBuilder::finish() {
 void set_deepest(Manifold& manifold, double separation) {
   if (manifold.count == 0) return;
   std::size_t lowest = 0;
-  for (std::size_t i = 1; i < static_cast<std::size_t>(manifold.count); ++i) {
-    if (manifold.points[i].separation < manifold.points[lowest].separation) lowest = i;
-  }
+  double least = kInfinity;
   for (std::size_t i = 0; i < static_cast<std::size_t>(manifold.count); ++i) {
-    manifold.points[i].separation = std::max(manifold.points[i].separation, separation);
+    double& of_point = manifold.points[i].separation;
+    if (of_point < least) lowest = i, least = of_point;
+    of_point = std::max(of_point, separation);
   }
   manifold.points[lowest].separation = separation;
 }

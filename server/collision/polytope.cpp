@@ -128,11 +128,14 @@ BoxFeatures::BoxFeatures(const Box& box) : radius_(box.half_extents.norm()) {
     faces_[i] = {i % 2 ? Vec3(-Vec3::Unit(axis)) : Vec3::Unit(axis), h[axis], 4 * i, 4,
                  2.0 * h1 * h2 / (h1 + h2)};
   }
+  put_in_fours(vertices_, vertex_fours_.data());
+  put_in_fours(faces_, face_fours_.data());
 }
 
 Polytope BoxFeatures::view() const {
-  return {vertices_,      kBoxLoops,       faces_,       kBoxEdges, kBoxNeighbourOffsets,
-          kBoxNeighbours, kBoxEdgesAround, Vec3::Zero(), radius_};
+  return {vertices_,      kBoxLoops,       faces_,        kBoxEdges,   kBoxNeighbourOffsets,
+          kBoxNeighbours, kBoxEdgesAround, vertex_fours_, face_fours_, Vec3::Zero(),
+          radius_};
 }
 
 TriangleFeatures::TriangleFeatures(const std::array<Vec3, 3>& corners, const Vec3& normal)
@@ -142,20 +145,32 @@ TriangleFeatures::TriangleFeatures(const std::array<Vec3, 3>& corners, const Vec
   const double offset = normal.dot(corners[0]);
   faces_ = {{{normal, offset, 0, 3, width}, {-normal, -offset, 3, 3, width}}};
   for (const Vec3& corner : corners) radius_ = std::max(radius_, corner.norm());
+  put_in_fours(vertices_, &vertex_four_);
+  put_in_fours(faces_, &face_four_);
 }
 
 Polytope TriangleFeatures::view() const {
-  return {vertices_,           kTriangleLoops,       faces_,  kTriangleEdges, kTriangleNeighbourOffsets,
-          kTriangleNeighbours, kTriangleEdgesAround, centre_, radius_};
+  return {vertices_,
+          kTriangleLoops,
+          faces_,
+          kTriangleEdges,
+          kTriangleNeighbourOffsets,
+          kTriangleNeighbours,
+          kTriangleEdgesAround,
+          {&vertex_four_, 1},
+          {&face_four_, 1},
+          centre_,
+          radius_};
 }
 
 Polytope view_of(const ConvexHull& hull) {
-  return {hull.vertices,   hull.loops,        hull.faces,  hull.edges, hull.neighbour_offsets,
-          hull.neighbours, hull.edges_around, hull.centre, hull.radius};
+  return {hull.vertices,          hull.loops,      hull.faces,        hull.edges,
+          hull.neighbour_offsets, hull.neighbours, hull.edges_around, hull.vertex_fours,
+          hull.face_fours,        hull.centre,     hull.radius};
 }
 
 Lowest descend(const Polytope& polytope, const Vec3& d, std::uint32_t start, double enough) {
-  if (polytope.vertices.size() <= kScannedVertices) return scan_lowest(polytope.vertices, d);
+  if (polytope.vertices.size() <= kScannedVertices) return scan_lowest(polytope.vertex_fours, d);
   Lowest lowest{start < polytope.vertices.size() ? start : 0, 0.0};
   lowest.height = d.dot(polytope.vertices[lowest.vertex]);
   for (bool descending = true; descending && lowest.height >= enough;) {

@@ -16,6 +16,8 @@ struct Polytope {
   std::span<const ConvexHull::Face> faces{};
   std::span<const ConvexHull::Edge> edges{};
   std::span<const std::uint32_t> neighbour_offsets{}, neighbours{}, edges_around{};
+  std::span<const FourVectors> vertex_fours{};
+  std::span<const ConvexHull::FourFaces> face_fours{};
   Vec3 centre = Vec3::Zero();  ///< Well inside.
   double radius = 0.0;
 
@@ -40,6 +42,8 @@ class BoxFeatures {
   double radius_;
   std::array<Vec3, 8> vertices_;
   std::array<ConvexHull::Face, 6> faces_;
+  std::array<FourVectors, 2> vertex_fours_;
+  std::array<ConvexHull::FourFaces, 2> face_fours_;
 };
 
 /// A triangle (corners counter-clockwise about its unit normal) as a body without thickness: face 0 looks along the normal.
@@ -53,6 +57,8 @@ class TriangleFeatures {
  private:
   std::array<Vec3, 3> vertices_;
   std::array<ConvexHull::Face, 2> faces_;
+  FourVectors vertex_four_;
+  ConvexHull::FourFaces face_four_;
   Vec3 centre_;
   double radius_ = 0.0;
 };

@@ -156,7 +156,7 @@ Vec3 rim_point(const Vec3& d, double r, double z) {
 }
 
 std::size_t furthest_vertex(const ConvexHull& hull, const Vec3& d) {
-  if (hull.vertices.size() <= kScannedVertices) return scan_lowest(hull.vertices, -d).vertex;
+  if (hull.vertices.size() <= kScannedVertices) return scan_lowest(hull.vertex_fours, -d).vertex;
   std::size_t best = 0;
   double best_height = hull.vertices[0].dot(d);
   // A vertex that no neighbour beats is the furthest of all: heights have no second maximum on a convex body.

@@ -20,6 +20,7 @@ class SurfaceFacet {
 
   const Shape& of(const SurfaceTriangle& triangle) {
     std::copy(triangle.corner.begin(), triangle.corner.end(), hull_->vertices.begin());
+    add_fours(*hull_);
     hull_->radius = 0.0;
     for (const Vec3& corner : triangle.corner) hull_->radius = std::max(hull_->radius, corner.norm());
     return shape_;

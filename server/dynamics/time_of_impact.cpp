@@ -200,6 +200,7 @@ class Search {
     const SurfaceTriangle triangle = surface.triangle(part);
     hull->vertices.assign(triangle.corner.begin(), triangle.corner.end());
     for (const Vec3& corner : triangle.corner) hull->radius = std::max(hull->radius, corner.norm());
+    add_fours(*hull);
     return HullPointer(hull);
   }
 

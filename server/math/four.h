@@ -4,10 +4,16 @@
 
 #include <array>
 #include <cmath>
+#include <cstdint>
+
+#include "math/types.h"
 
 namespace tumble {
 
 using Four = double __attribute__((vector_size(32)));
+
+/// One in memory, among any doubles.
+using FourInMemory = double __attribute__((vector_size(32), aligned(8), may_alias));
 
 /// What comparing two of them gives: lanes of 0 or -1.
 using FourFlags = decltype(Four{} < Four{});
@@ -22,10 +28,19 @@ inline Four four(const std::array<double, 4>& x) {
 inline Four four(double x, double y, double z) {
   return Four{x, y, z, z};
 }
+inline Four load_four(const double* from) {
+  return *reinterpret_cast<const FourInMemory*>(from);
+}
+inline void store_four(const Four& x, double* to) {
+  *reinterpret_cast<FourInMemory*>(to) = x;
+}
 inline Four absolute(const Four& x) {
   constexpr FourFlags kAllButSign = {0x7fffffffffffffff, 0x7fffffffffffffff, 0x7fffffffffffffff,
                                      0x7fffffffffffffff};
   return (Four)((FourFlags)x & kAllButSign);
+}
+inline bool any(const FourFlags& flags) {
+  return (flags[0] | flags[1] | flags[2] | flags[3]) != 0;
 }
 inline Four larger(const Four& x, const Four& y) {
   return x > y ? x : y;
@@ -54,5 +69,35 @@ template <int from_0, int from_1, int from_2, int from_3>
 Four shuffled(const Four& v) {
   return __builtin_shufflevector(v, v, from_0, from_1, from_2, from_3);
 }
+
+/// The least of the four, in every lane.
+inline Four least_lane(const Four& x) {
+  const Four y = smaller(x, rotated<2>(x));
+  return smaller(y, rotated<1>(y));
+}
+
+/// The first of the lowest among numbers that come in fours. No branches: which is the lowest can't be foreseen.
+class FirstLowest {
+ public:
+  void look_at(const Four& next) {
+    at_ = next < least_ ? index_ : at_;
+    least_ = smaller(next, least_);
+    index_ += 4.0;
+  }
+  double value() const { return least_lane(least_)[0]; }
+  /// Counted from 0.
+  std::uint32_t index() const {
+    const Four of_least = least_ == least_lane(least_) ? at_ : four(kInfinity);
+    return static_cast<std::uint32_t>(least_lane(of_least)[0]);
+  }
+
+ private:
+  Four least_ = four(kInfinity), at_{}, index_ = {0.0, 1.0, 2.0, 3.0};
+};
+
+/// Four vectors or points, coordinate by coordinate.
+struct FourVectors {
+  Four x, y, z;
+};
 
 }  // namespace tumble

@@ -1,6 +1,7 @@
 // What one query of the narrow phase costs, beside plain libccd's penetration queries and, for boxes, Bullet's and ODE's
 // box-box functions on the same pairs, all in double precision, from the pose of B as quaternion and position to the
-// contact. 512 pairs a class. "cold" forgets the pair before each query; the others keep each pair's memory, while
+// contact. 512 pairs a class, one after the other in the same order again and again, which a processor learns by heart; with
+// `--shuffled` in an order that never comes back, as in a scene. "cold" forgets the pair before each query; the others keep each pair's memory, while
 // nothing moves or, where a pace is given, while B moves a little with every query.
 // `--queries=N` runs every benchmark exactly so often: two such runs under callgrind differ by the instructions of the
 // queries between them (run_benchmarks.py).
@@ -10,6 +11,7 @@
 #include <ccd/ccd.h>
 #include <ode/ode.h>
 
+#include <algorithm>
 #include <array>
 #include <random>
 #include <string>
@@ -186,16 +188,24 @@ Pair sphere_ellipsoid(Source& source) {
 
 using Make = Pair (*)(Source&);
 
+/// Pairs of one kind; with every step B moves by about `pace` [m] and [rad].
+struct Course {
+  Make make;
+  double pace;
+  bool shuffled;
+};
+
 /// Pairs and the way of each B: with every step it has moved by about `pace` [m] and [rad], to and fro along one direction
 /// for 64 steps each.
 class Trace {
  public:
   static constexpr std::size_t kPairs = 512;
 
-  Trace(Make make, double pace) : turns_(pace > 0.0 ? 64 : 1) {
+  explicit Trace(const Course& course) : turns_(course.pace > 0.0 ? 64 : 1), shuffled_(course.shuffled) {
     Source source;
-    for (std::size_t i = 0; i < kPairs; ++i) pairs_.push_back(make(source));
+    for (std::size_t i = 0; i < kPairs; ++i) pairs_.push_back(course.make(source));
     std::vector<Pair> now = pairs_;
+    const double pace = course.pace;
     for (std::size_t i = 0; i < kPairs; ++i) {
       shift_.push_back(source.vector(-pace, pace));
       turn_.push_back(exp_map(source.vector(-pace, pace)));
@@ -209,26 +219,30 @@ class Trace {
   }
 
   const std::vector<Pair>& pairs() const { return pairs_; }
-  /// Goes on to the next pair or, after the last, to the first a step later.
+  /// Goes on to the next pair or, after all, to the first one a step later.
   void advance() {
-    if (++pair_ < kPairs) return;
-    pair_ = 0;
-    step_ = (step_ + 1) % (2 * turns_);
+    if (++visited_ == kPairs) {
+      visited_ = 0;
+      step_ = (step_ + 1) % (2 * turns_);
+      if (shuffled_) stride_ = (5 * stride_ + 2) % (1u << 30);  // odd, so that every pair is visited
+    }
+    pair_ = (pair_ + stride_) % kPairs;
   }
   std::size_t index() const { return pair_; }
   const Pair& pair() const { return pairs_[pair_]; }
   const Pose& X_WB() const { return X_WB_[std::min(step_, 2 * turns_ - 1 - step_) * kPairs + pair_]; }
 
  private:
-  std::size_t turns_, pair_ = 0, step_ = 0;
+  std::size_t turns_, pair_ = 0, visited_ = 0, step_ = 0, stride_ = 1;
+  bool shuffled_;
   std::vector<Pair> pairs_;
   std::vector<Vec3> shift_;
   std::vector<Quat> turn_;
   std::vector<Pose> X_WB_;  // step by step
 };
 
-void tumble_cold(benchmark::State& state, Make make, double pace) {
-  Trace trace(make, pace);
+void tumble_cold(benchmark::State& state, const Course& course) {
+  Trace trace(course);
   NarrowPhaseCounters counters;
   std::uint64_t points = 0;
   Manifold manifold;
@@ -243,8 +257,8 @@ void tumble_cold(benchmark::State& state, Make make, double pace) {
   state.counters["points"] = static_cast<double>(points) / static_cast<double>(state.iterations());
 }
 
-void tumble_kept(benchmark::State& state, Make make, double pace, const NarrowPhaseOptions& options) {
-  Trace trace(make, pace);
+void tumble_kept(benchmark::State& state, const Course& course, const NarrowPhaseOptions& options) {
+  Trace trace(course);
   std::vector<PairCache> caches(Trace::kPairs);
   std::vector<Manifold> manifolds(Trace::kPairs);
   NarrowPhaseCounters counters;
@@ -282,8 +296,8 @@ btBoxShape to_bullet(const Shape& shape) {
   return btBoxShape(btVector3(h.x(), h.y(), h.z()));
 }
 
-void bullet_boxes(benchmark::State& state, Make make, double pace) {
-  Trace trace(make, pace);
+void bullet_boxes(benchmark::State& state, const Course& course) {
+  Trace trace(course);
   std::vector<btBoxShape> a, b;
   std::vector<btDiscreteCollisionDetectorInterface::ClosestPointInput> inputs;
   for (const Pair& pair : trace.pairs()) {
@@ -321,8 +335,8 @@ struct OdeSides {
   dVector3 sides;
 };
 
-void ode_boxes(benchmark::State& state, Make make, double pace) {
-  Trace trace(make, pace);
+void ode_boxes(benchmark::State& state, const Course& course) {
+  Trace trace(course);
   std::vector<OdePlace> place_a;
   std::vector<OdeSides> a, b;
   for (const Pair& pair : trace.pairs()) {
@@ -366,8 +380,8 @@ void ccd_centre(const void* object, ccd_vec3_t* out) {
 }
 
 /// Default tolerances; the iteration limit keeps touching pairs from cycling for ever.
-void plain_libccd(benchmark::State& state, Make make, double pace, bool mpr) {
-  Trace trace(make, pace);
+void plain_libccd(benchmark::State& state, const Course& course, bool mpr) {
+  Trace trace(course);
   std::vector<PlacedShape> placed_a;
   for (const Pair& pair : trace.pairs()) placed_a.emplace_back(pair.a, pair.X_WA);
   ccd_t ccd;
@@ -389,11 +403,13 @@ void plain_libccd(benchmark::State& state, Make make, double pace, bool mpr) {
 
 class Registry {
  public:
-  explicit Registry(std::int64_t queries) : queries_(queries) {}
+  /// 0 queries: as many as it takes to measure.
+  Registry(std::int64_t queries, bool shuffled) : queries_(queries), shuffled_(shuffled) {}
 
-  template <typename... Arguments>
-  void add(const std::string& name, Arguments... arguments) {
-    auto* const benchmark = benchmark::RegisterBenchmark(name.c_str(), arguments...);
+  template <typename Run, typename... Arguments>
+  void add(const std::string& name, Run run, Make make, double pace, Arguments... arguments) {
+    auto* const benchmark =
+        benchmark::RegisterBenchmark(name.c_str(), run, Course{make, pace, shuffled_}, arguments...);
     if (queries_ > 0) benchmark->Iterations(queries_);
   }
   /// Where nothing moves, every query forgets the pair.
@@ -414,6 +430,7 @@ class Registry {
 
  private:
   std::int64_t queries_;
+  bool shuffled_;
 };
 
 void register_polytopes(Registry& registry) {
@@ -452,17 +469,23 @@ void register_curved(Registry& registry) {
   registry.add_class("sphere_ellipsoid", sphere_ellipsoid);
 }
 
-/// Takes `--queries=N` out of the arguments; 0 if it is not there.
-std::int64_t take_queries(int& argc, char** argv) {
-  constexpr std::string_view kOption = "--queries=";
-  if (argc < 2 || !std::string_view(argv[argc - 1]).starts_with(kOption)) return 0;
-  return std::stoll(argv[--argc] + kOption.size());
+/// Takes the argument that begins with `option` out of them; null if there is none.
+const char* take(std::string_view option, int& argc, char** argv) {
+  const auto is_it = [&](const char* argument) { return std::string_view(argument).starts_with(option); };
+  char** const found = std::find_if(argv + 1, argv + argc, is_it);
+  if (found == argv + argc) return nullptr;
+  const char* const argument = *found;
+  std::copy(found + 1, argv + argc, found);
+  --argc;
+  return argument + option.size();
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  Registry registry(take_queries(argc, argv));
+  const char* const queries = take("--queries=", argc, argv);
+  const bool shuffled = take("--shuffled", argc, argv) != nullptr;
+  Registry registry(queries != nullptr ? std::stoll(queries) : 0, shuffled);
   register_polytopes(registry);
   register_curved(registry);
   benchmark::Initialize(&argc, argv);

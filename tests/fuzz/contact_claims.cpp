@@ -99,6 +99,7 @@ Shape scaled(const Shape& shape, double s) {
   for (ConvexHull::Face& face : hull.faces) face.offset *= s, face.width *= s;
   hull.centre *= s;
   hull.radius *= s;
+  add_fours(hull);
   return std::make_shared<const ConvexHull>(std::move(hull));
 }
 

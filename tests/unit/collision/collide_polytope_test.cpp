@@ -24,6 +24,7 @@ HullPointer flat_triangle(const std::array<Vec3, 3>& corners, const Vec3& normal
   hull.edges_around.assign(flat.edges_around.begin(), flat.edges_around.end());
   hull.centre = flat.centre;
   hull.radius = flat.radius;
+  add_fours(hull);
   return std::make_shared<const ConvexHull>(std::move(hull));
 }
 

@@ -238,7 +238,9 @@ TEST(ConvexHull, TheLowestVertexIsTheFirstOfEquals) {
       const Vec3 d(whole() - 1.0, whole() - 1.0, whole() - 1.0);
       const auto lower = [&](const Vec3& v, const Vec3& w) { return d.dot(v) < d.dot(w); };
       const auto first = std::min_element(vertices.begin(), vertices.end(), lower);
-      const Lowest lowest = scan_lowest(vertices, d);
+      std::vector<FourVectors> fours((count + 3) / 4);
+      put_in_fours(vertices, fours.data());
+      const Lowest lowest = scan_lowest(fours, d);
       ASSERT_EQ(lowest.vertex, first - vertices.begin()) << count;
       ASSERT_EQ(lowest.height, d.dot(*first));
     }

@@ -213,20 +213,15 @@ void drop_collinear(std::vector<std::vector<std::uint32_t>>& loops, std::size_t 
 
 void put_in_fours(std::span<const Vec3> vertices, FourVectors* fours) {
   for (std::size_t i = 0; i < (vertices.size() + 3) / 4 * 4; ++i) {
-    const Vec3& v = vertices[i < vertices.size() ? i : 0];
-    FourVectors& four = fours[i / 4];
-    four.x[i % 4] = v.x(), four.y[i % 4] = v.y(), four.z[i % 4] = v.z();
+    fours[i / 4].set(i % 4, vertices[i < vertices.size() ? i : 0]);
   }
 }
 
 void put_in_fours(std::span<const ConvexHull::Face> faces, ConvexHull::FourFaces* fours) {
   for (std::size_t i = 0; i < (faces.size() + 3) / 4 * 4; ++i) {
     const ConvexHull::Face& face = faces[i < faces.size() ? i : 0];
-    ConvexHull::FourFaces& four = fours[i / 4];
-    four.normal.x[i % 4] = face.normal.x();
-    four.normal.y[i % 4] = face.normal.y();
-    four.normal.z[i % 4] = face.normal.z();
-    four.offset[i % 4] = face.offset;
+    fours[i / 4].normal.set(i % 4, face.normal);
+    fours[i / 4].offset[i % 4] = face.offset;
   }
 }
 
@@ -238,9 +233,8 @@ void add_fours(ConvexHull& hull) {
 }
 
 Lowest scan_lowest(std::span<const FourVectors> vertices, const Vec3& d) {
-  const Four x = four(d.x()), y = four(d.y()), z = four(d.z());
   FirstLowest lowest;
-  for (const FourVectors& v : vertices) lowest.look_at(x * v.x + y * v.y + z * v.z);
+  for (const FourVectors& v : vertices) lowest.look_at(dot(v, d));
   return {lowest.index(), lowest.value()};
 }
 

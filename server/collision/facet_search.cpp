@@ -4,6 +4,7 @@
 
 #include <array>
 
+#include "collision/edge_arc.h"
 #include "collision/segment.h"
 
 namespace tumble {
@@ -16,8 +17,6 @@ constexpr double kFacetTie = 1e-14;
 constexpr double kLeastDisc = 1e-4;
 /// Fours of faces of each body whose bounds are kept; those of larger hulls are computed again where needed.
 constexpr std::size_t kKeptFours = 128;
-/// Edges of each side that are looked at together.
-constexpr std::size_t kBlock = 128;
 /// From so many pairs of edges on it pays to look for a better point against each edge.
 constexpr std::size_t kManyPairs = 256;
 /// Of a walk between faces and corners. If two don't end it, edges win.
@@ -34,15 +33,6 @@ std::uint32_t encode(const Facet& facet) {
   return static_cast<std::uint32_t>(facet.kind) << 2 * kIndexBits | facet.a << kIndexBits | facet.b;
 }
 
-/// The arc that an edge's normals span on the Gauss sphere; of B with its normals turned round.
-struct EdgeArc {
-  Vec3 tail, along, left, right;
-  std::uint32_t index;
-  /// Some direction between the two normals.
-  Vec3 middle() const { return outward_from_edge(along, left, right); }
-};
-using Block = std::array<EdgeArc, kBlock>;
-
 /// Heights of one point of the other body over every face of this one: upper bounds of what the faces separate.
 class PointHeights {
  public:
@@ -52,11 +42,10 @@ class PointHeights {
   std::uint32_t measure(const Polytope& polytope, const Vec3& point) {
     polytope_ = &polytope;
     point_ = point;
-    const Four x = four(point.x()), y = four(point.y()), z = four(point.z());
     FirstLowest deepest;
     for (std::size_t i = 0; i < polytope.face_fours.size(); ++i) {
       const ConvexHull::FourFaces& face = polytope.face_fours[i];
-      const Four depth = face.offset - (x * face.normal.x + y * face.normal.y + z * face.normal.z);
+      const Four depth = face.offset - dot(face.normal, point);
       if (i < kKeptFours) store_four(-depth, &heights_[4 * i]);
       deepest.look_at(depth);
     }
@@ -65,6 +54,8 @@ class PointHeights {
   double operator[](std::size_t face) const {
     return face < 4 * kKeptFours ? heights_[face] : height_over(face);
   }
+  /// The heights of face 4 i and the three after it; i < kKeptFours.
+  Four four_from(std::size_t i) const { return load_four(&heights_[4 * i]); }
 
  private:
   double height_over(std::size_t i) const {
@@ -82,12 +73,35 @@ struct Side {
 
   /// No face separates by more than this.
   double bound(std::size_t face) const { return std::min(near[face], nearer[face]); }
-  /// Along an arc between two normals the overlap with any one point of the other body is at least the smaller of its
-  /// ends, as long as both are overlaps. False: no facet of this edge overlaps by less than `depth` >= 0.
-  bool may_win(const ConvexHull::Edge& edge, double depth) const {
-    return std::max(near[edge.left_face], near[edge.right_face]) >= -depth &&
-           std::max(nearer[edge.left_face], nearer[edge.right_face]) >= -depth;
+};
+
+/// Which edges of a side may have a facet that overlaps by less than a depth >= 0. Along an arc between two normals the
+/// overlap with any one point of the other body is at least the smaller of its ends, as long as both are overlaps.
+class EdgesThatMayWin {
+ public:
+  EdgesThatMayWin(const Side& side, double depth) : side_(side), depth_(depth) {
+    const std::size_t fours = std::min(kKeptFours, side.polytope.face_fours.size());
+    for (std::size_t i = 0; i < fours; ++i) {
+      const FourFlags near = side.near.four_from(i) >= four(-depth),
+                      nearer = side.nearer.four_from(i) >= four(-depth);
+      const FourFlags points = (near & 1) | (nearer & 2);
+      for (std::size_t k = 0; k < 4; ++k) points_[4 * i + k] = static_cast<std::uint8_t>(points[k]);
+    }
   }
+  bool contains(const ConvexHull::Edge& edge) const {
+    return (points_above(edge.left_face) | points_above(edge.right_face)) == 3;
+  }
+
+ private:
+  /// Bits of the two points that lie no deeper than that behind a face.
+  int points_above(std::uint32_t face) const {
+    if (face < 4 * kKeptFours) return points_[face];
+    return (side_.near[face] >= -depth_ ? 1 : 0) | (side_.nearer[face] >= -depth_ ? 2 : 0);
+  }
+
+  const Side& side_;
+  const double depth_;
+  std::array<std::uint8_t, 4 * kKeptFours> points_;
 };
 
 /// Where two bodies touch in a facet of their difference: a point of each; how far the facet reaches about the point of
@@ -142,8 +156,8 @@ class FacetSearch {
   void search_edges(double margin);
   void cross(const EdgeArc& a, const EdgeArc& b);
   bool overlaps_more(const EdgeArc& arc, bool of_a, double depth);
-  std::size_t gather(bool of_a, std::uint32_t& next, Block& block) const;
-  std::size_t thin_out(bool of_a, Block& block, std::size_t count);
+  std::size_t gather(bool of_a, std::uint32_t& next, ArcBlock& block) const;
+  std::size_t thin_out(bool of_a, ArcBlock& block, std::size_t count);
   Touch touch_of_face(const Facet& facet) const;
   Touch touch_of_edges(const Facet& facet) const;
   void be_not_along(const Vec3& face_normal, const Facet& facet, Touch& touch) const;
@@ -276,12 +290,8 @@ bool FacetSearch::overlaps_more(const EdgeArc& arc, bool of_a, double depth) {
   return std::min(arc.left.dot(d), arc.right.dot(d)) > depth;
 }
 
-/// The arcs cross if the ends of each lie on different sides of the other's plane, and on the same half of the sphere.
+/// Arcs that straddle each other's planes cross if they do so on the same half of the sphere.
 void FacetSearch::cross(const EdgeArc& a, const EdgeArc& b) {
-  const double bl = b.left.dot(a.along), br = b.right.dot(a.along);
-  if (bl * br >= 0.0) return;
-  const double al = a.left.dot(b.along), ar = a.right.dot(b.along);
-  if (al * ar >= 0.0) return;
   const Vec3 across = a.along.cross(b.along);
   const double side = across.dot(a.middle());
   if (side * across.dot(b.middle()) <= 0.0) return;
@@ -295,18 +305,21 @@ void FacetSearch::cross(const EdgeArc& a, const EdgeArc& b) {
 }
 
 /// Of B's or A's edges from `next` on, those that may win, until the block is full.
-std::size_t FacetSearch::gather(bool of_a, std::uint32_t& next, Block& block) const {
+std::size_t FacetSearch::gather(bool of_a, std::uint32_t& next, ArcBlock& block) const {
   const Side& side = of_a ? a_ : b_;
-  const double depth = std::max(0.0, -needed());
+  const EdgesThatMayWin may_win(side, std::max(0.0, -needed()));
+  // Without branches, since nobody can foresee which they are.
+  std::array<std::uint32_t, kArcBlock> found;
   std::size_t count = 0;
-  for (; next < side.polytope.edges.size() && count < kBlock; ++next) {
-    if (side.may_win(side.polytope.edges[next], depth))
-      block[count++] = of_a ? arc_of_a(next) : arc_of_b(next);
+  for (; next < side.polytope.edges.size() && count < kArcBlock; ++next) {
+    found[count] = next;
+    count += may_win.contains(side.polytope.edges[next]);
   }
+  for (std::size_t i = 0; i < count; ++i) block[i] = of_a ? arc_of_a(found[i]) : arc_of_b(found[i]);
   return count;
 }
 
-std::size_t FacetSearch::thin_out(bool of_a, Block& block, std::size_t count) {
+std::size_t FacetSearch::thin_out(bool of_a, ArcBlock& block, std::size_t count) {
   const double depth = std::max(0.0, -needed());
   std::size_t kept = 0;
   for (std::size_t i = 0; i < count; ++i) {
@@ -316,7 +329,8 @@ std::size_t FacetSearch::thin_out(bool of_a, Block& block, std::size_t count) {
 }
 
 void FacetSearch::search_edges(double margin) {
-  Block block_a, block_b;
+  ArcBlock block_a, block_b;
+  FourArcBlock fours_b;
   for (std::uint32_t next_a = 0; next_a < a_.polytope.edges.size();) {
     std::size_t count_a = gather(true, next_a, block_a);
     bool thinned = false;
@@ -327,8 +341,12 @@ void FacetSearch::search_edges(double margin) {
         thinned = true;
         count_b = thin_out(false, block_b, count_b);
       }
+      put_in_fours(block_b, count_b, fours_b);
       for (std::size_t i = 0; i < count_a; ++i) {
-        for (std::size_t j = 0; j < count_b; ++j) cross(block_a[i], block_b[j]);
+        for (std::size_t j = 0; j < count_b; j += 4) {
+          for_each_lane(fours_b[j / 4].straddle(block_a[i]),
+                        [&](std::size_t lane) { cross(block_a[i], block_b[j + lane]); });
+        }
         if (best_.separation > margin) return;
       }
     }

@@ -173,7 +173,7 @@ class Query {
 
   /// Of a separation [m].
   double error() const {
-    return kSeparationRounding * (bounding_radius(a_) + bounding_radius(b_) + X_AB_.p.norm());
+    return kSeparationRounding * (bounding_radius(a_) + bounding_radius(b_) + X_AB_.p.lpNorm<1>());
   }
 
   void remember_gap(const Vec3& axis_A, double gap) {

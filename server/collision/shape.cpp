@@ -226,9 +226,17 @@ Vec3 support(const Shape& shape, const Vec3& d_S) {
   return std::visit(SupportPoint{d_S}, shape);
 }
 
+double extent_along(const Shape& shape, const Vec3& d_S) {
+  if (const auto* box = std::get_if<Box>(&shape)) return box->half_extents.dot(d_S.cwiseAbs());
+  if (const auto* hull = std::get_if<HullPointer>(&shape)) {
+    if ((*hull)->vertices.size() <= kScannedVertices) return -scan_lowest((*hull)->vertex_fours, -d_S).height;
+  }
+  return d_S.dot(support(shape, d_S));
+}
+
 double separation_along(const Shape& a, const Shape& b, const Mat3& R_AB, const Vec3& p_AB, const Vec3& n_A) {
   const Vec3 n_B = R_AB.transpose() * n_A;
-  return n_A.dot(p_AB) + n_B.dot(support(b, -n_B)) - n_A.dot(support(a, n_A));
+  return n_A.dot(p_AB) - extent_along(b, -n_B) - extent_along(a, n_A);
 }
 
 }  // namespace tumble

@@ -71,6 +71,9 @@ double bounding_radius(const Shape& shape);
 /// mirrored calls give mirrored points. Not for half-spaces and surfaces.
 Vec3 support(const Shape& shape, const Vec3& d_S);
 
+/// How far the shape reaches along d, both in S: d . support [m] for a unit d.
+double extent_along(const Shape& shape, const Vec3& d_S);
+
 /// Distance between the planes normal to n_A (unit, from A to B) that touch A and B at X_AB [m]; > 0: n_A separates.
 double separation_along(const Shape& a, const Shape& b, const Mat3& R_AB, const Vec3& p_AB, const Vec3& n_A);
 /// Its rounding error per length involved: two supports of three products each, a transform and a normalised axis stay

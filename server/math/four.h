@@ -64,6 +64,15 @@ Four rotated_three(const Four& x) {
   return __builtin_shufflevector(x, x, by, (by + 1) % 3, (by + 2) % 3, 3);
 }
 
+/// For the lanes that are set, from the first to the last.
+template <typename Do>
+void for_each_lane(const FourFlags& flags, const Do& call) {
+  if (!any(flags)) return;
+  for (std::size_t lane = 0; lane < 4; ++lane) {
+    if (flags[lane] != 0) call(lane);
+  }
+}
+
 /// Lane i of the result is lane `from_i` of `v`.
 template <int from_0, int from_1, int from_2, int from_3>
 Four shuffled(const Four& v) {
@@ -98,6 +107,10 @@ class FirstLowest {
 /// Four vectors or points, coordinate by coordinate.
 struct FourVectors {
   Four x, y, z;
+  void set(std::size_t lane, const Vec3& v) { x[lane] = v.x(), y[lane] = v.y(), z[lane] = v.z(); }
 };
+inline Four dot(const FourVectors& v, const Vec3& w) {
+  return w.x() * v.x + w.y() * v.y + w.z() * v.z;
+}
 
 }  // namespace tumble

@@ -3,12 +3,12 @@
 
     run_benchmarks.py BUILD [NAME...] [--long]     all programs bench_*, or those named (`step` or `bench_step`)
 
-`stream` is stream.py, run in a network namespace of its own; `error` is error_curves.py: minutes, with --long
-hours. Where valgrind is installed, bench_contacts is also run under
-callgrind for the instructions of one query: other than times they hardly differ between machines. Beside bench_NAME a
-program NAME_accuracy... may print a Markdown table of its own; its first argument is the share of its full size to run,
-TUMBLE_SHARE or 0.001, with --long all of it: hours. A script NAME_curves.py runs it instead, if there is one, and writes what it draws beside the
-programs.
+`stream` is stream.py, run in a network namespace of its own; `error` is error_curves.py: minutes, with --long hours.
+bench_contacts is run a second time with its pairs in an order that never comes back, since a processor learns the
+branches of a few hundred pairs by heart. Where valgrind is installed, it is also run under callgrind for the instructions
+of one query: other than times they hardly differ between machines. Beside bench_NAME a program NAME_accuracy... may print
+a Markdown table of its own; its first argument is the share of its full size to run, TUMBLE_SHARE or 0.001, with --long
+all of it: hours. A script NAME_curves.py runs it instead, if there is one, and writes what it draws beside the programs.
 """
 import json
 import os
@@ -24,11 +24,19 @@ OWN_KEYS = {"name", "family_index", "per_family_instance_index", "run_name", "ru
             "repetition_index", "threads", "iterations", "real_time", "cpu_time", "time_unit"}
 
 
-def run_program(program):
+def run_program(program, *options):
     """The parsed report of one program; its progress goes to the terminal."""
-    print(f"running {program.name}", file=sys.stderr)
-    output = subprocess.run([program, "--benchmark_format=json"], check=True, stdout=subprocess.PIPE, text=True).stdout
-    return json.loads(output)
+    print(" ".join(["running", program.name, *options]), file=sys.stderr)
+    command = [program, "--benchmark_format=json", *options]
+    return json.loads(subprocess.run(command, check=True, stdout=subprocess.PIPE, text=True).stdout)
+
+
+def add_shuffled(program, report):
+    """What the same takes if the pairs come in an order that never comes back."""
+    shuffled = {run["name"]: run for run in run_program(program, "--shuffled")["benchmarks"]}
+    for run in report["benchmarks"]:
+        other = shuffled[run["name"]]
+        run["shuffled"] = f"{other['real_time']:.4g} {other['time_unit']}"
 
 
 def count_instructions(program, name, queries):
@@ -116,8 +124,10 @@ def main():
     sections = []
     for path in programs:
         report = run_program(path)
-        if path.name == "bench_contacts" and shutil.which("valgrind"):
-            add_instructions(path, report)
+        if path.name == "bench_contacts":
+            add_shuffled(path, report)
+            if shutil.which("valgrind"):
+                add_instructions(path, report)
         sections.append(f"## {path.name}\n{table(report)}")
         for accuracy in sorted(path.parent.glob(path.name.removeprefix("bench_") + "_accuracy*")):
             if accuracy.is_file():

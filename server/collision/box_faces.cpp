@@ -5,84 +5,11 @@
 #include <bit>
 #include <cstddef>
 
-#include "collision/feature_name.h"
+#include "collision/box_features.h"
 #include "collision/rectangle_clip.h"
 
 namespace tumble {
 namespace {
-
-/// Features of a box: its twelve edges, each by the axis it lies along and the corner it starts from, its corners, and its
-/// inside for a point that only the other body names.
-constexpr std::uint8_t edge_at(std::uint32_t axis, std::uint32_t corner) {
-  return static_cast<std::uint8_t>(8 * axis + (corner & ~(1u << axis)));
-}
-constexpr std::uint8_t kFirstCorner = 24, kInside = 32, kFeatures = 33;
-constexpr std::uint8_t corner_at(std::uint32_t corner) {
-  return static_cast<std::uint8_t>(kFirstCorner + corner);
-}
-
-constexpr std::uint32_t name_of(std::uint32_t a, std::uint32_t b) {
-  if (a >= kFirstCorner && a < kInside) return name_vertex(true, a - kFirstCorner);
-  if (b >= kFirstCorner && b < kInside) return name_vertex(false, b - kFirstCorner);
-  return name_crossing(a % 8, a % 8 | 1u << a / 8 % 3, b % 8, b % 8 | 1u << b / 8 % 3);
-}
-/// Of a feature of A and one of B.
-constexpr auto kNames = [] {
-  std::array<std::array<std::uint32_t, kFeatures>, kFeatures> names{};
-  for (std::uint32_t a = 0; a < kFeatures; ++a) {
-    for (std::uint32_t b = 0; b < kFeatures; ++b) names[a][b] = name_of(a, b);
-  }
-  return names;
-}();
-
-/// Corner of a box across axis k on its upper or lower side, on the upper one of axis k + 1, k + 2 or not (cyclic).
-constexpr std::uint32_t corner_of(std::uint32_t k, bool upper, bool upper1, bool upper2) {
-  return (upper ? 1u << k : 0u) | (upper1 ? 1u << (k + 1) % 3 : 0u) | (upper2 ? 1u << (k + 2) % 3 : 0u);
-}
-
-/// Of a reference face across axis k, x and y along the axes k + 1 and k + 2: its parts as RectangleClip numbers them.
-using ReferenceFeatures = std::array<std::uint8_t, 9>;
-constexpr ReferenceFeatures reference_features(std::uint32_t k, bool upper) {
-  const std::array<std::uint32_t, 4> corners = {
-      corner_of(k, upper, true, true), corner_of(k, upper, false, true), corner_of(k, upper, false, false),
-      corner_of(k, upper, true, false)};
-  const std::uint32_t k1 = (k + 1) % 3, k2 = (k + 2) % 3;
-  return {edge_at(k2, corners[0]), edge_at(k1, corners[1]), edge_at(k2, corners[2]),
-          edge_at(k1, corners[3]), corner_at(corners[0]),   corner_at(corners[1]),
-          corner_at(corners[2]),   corner_at(corners[3]),   kInside};
-}
-
-/// Of an incident face, e1 along axis k + 1, turned round on the lower side, and e2 along k + 2: what the places of
-/// RectangleClip lie on.
-using IncidentFeatures = std::array<std::uint8_t, 16>;
-constexpr IncidentFeatures incident_features(std::uint32_t k, bool upper) {
-  const std::array<std::uint32_t, 4> corners = {
-      corner_of(k, upper, !upper, false), corner_of(k, upper, upper, false), corner_of(k, upper, upper, true),
-      corner_of(k, upper, !upper, true)};
-  const std::uint32_t k1 = (k + 1) % 3, k2 = (k + 2) % 3;
-  const std::array<std::uint8_t, 4> edges = {edge_at(k1, corners[0]), edge_at(k2, corners[1]),
-                                             edge_at(k1, corners[2]), edge_at(k2, corners[3])};
-  IncidentFeatures features{};
-  for (std::size_t i = 0; i < 4; ++i) {
-    features[i] = corner_at(corners[i]);
-    features[4 + i] = features[8 + i] = edges[i];
-    features[12 + i] = kInside;
-  }
-  return features;
-}
-
-constexpr auto kReferenceFeatures = [] {
-  std::array<std::array<ReferenceFeatures, 2>, 3> features{};
-  for (std::uint32_t k = 0; k < 3; ++k)
-    features[k] = {reference_features(k, false), reference_features(k, true)};
-  return features;
-}();
-constexpr auto kIncidentFeatures = [] {
-  std::array<std::array<IncidentFeatures, 2>, 3> features{};
-  for (std::uint32_t k = 0; k < 3; ++k)
-    features[k] = {incident_features(k, false), incident_features(k, true)};
-  return features;
-}();
 
 template <typename Features>
 const Features& features_of(const std::array<std::array<Features, 2>, 3>& features, const BoxFace& face) {
@@ -220,7 +147,7 @@ class ClippedFace {
   std::uint32_t name(std::uint32_t i) const {
     const std::uint8_t reference = of_reference_[static_cast<std::size_t>(clip_.on[i / 4][i % 4])],
                        incident = of_incident_[i];
-    return reference_is_a_ ? kNames[reference][incident] : kNames[incident][reference];
+    return reference_is_a_ ? kBoxNames[reference][incident] : kBoxNames[incident][reference];
   }
 
   void put(std::uint32_t i, ManifoldPoint& point) const {

@@ -45,6 +45,7 @@ TEST(Shape, SupportIsFurthestAndInsideTheRadius) {
       const double length = random.log_uniform(1e-200, 1e100);
       const Vec3 p = support(shape, d), q = support(shape, other);
       EXPECT_GE(d.dot(p), d.dot(q) - 1e-15) << shape_name(shape);
+      EXPECT_NEAR(extent_along(shape, d), d.dot(p), 3e-16) << shape_name(shape);  // 1.2e-16
       EXPECT_LE((support(shape, length * d) - p).norm(), 1e-15) << shape_name(shape);
       EXPECT_LE(p.norm(), bounding_radius(shape) * (1.0 + 1e-15)) << shape_name(shape);
       furthest = std::max(furthest, p.norm());

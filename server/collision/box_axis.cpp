@@ -20,11 +20,10 @@ BoxAxis find_face_axis(const BoxPair& pair, double tie) {
   const Vec3 &a = pair.a, &b = pair.b, &t = pair.t;
   const auto column_abs = [&](int j) { return absolute(four(pair.R(0, j), pair.R(1, j), pair.R(2, j))); };
   const Four a_axes =
-      absolute(four(t.x(), t.y(), t.z())) -
-      (four(a.x(), a.y(), a.z()) + b.x() * column_abs(0) + b.y() * column_abs(1) + b.z() * column_abs(2));
-  const Four b_axes = absolute(four(pair.t_B.x(), pair.t_B.y(), pair.t_B.z())) -
-                      (four(b.x(), b.y(), b.z()) + a.x() * absolute(pair.rows[0]) +
-                       a.y() * absolute(pair.rows[1]) + a.z() * absolute(pair.rows[2]));
+      absolute(four(t)) - (four(a) + b.x() * column_abs(0) + b.y() * column_abs(1) + b.z() * column_abs(2));
+  const Four b_axes =
+      absolute(four(pair.t_B)) - (four(b) + a.x() * absolute(pair.rows[0]) + a.y() * absolute(pair.rows[1]) +
+                                  a.z() * absolute(pair.rows[2]));
   int i = 0, j = 0;
   for (int k = 1; k < 3; ++k) {
     if (a_axes[k] > a_axes[i] + tie) i = k;
@@ -62,7 +61,7 @@ struct Crossings {
   Crossings(const BoxPair& pair, double at_least) {
     const std::array<Four, 3>& R = pair.rows;
     const std::array<Four, 3> R_abs = {absolute(R[0]), absolute(R[1]), absolute(R[2])};
-    const Four b = four(pair.b.x(), pair.b.y(), pair.b.z());
+    const Four b = four(pair.b);
     const Four b1 = rotated_three<1>(b), b2 = rotated_three<2>(b);
     const double limit = at_least - kAxisTie * pair.size;
     const Four limit2 = four(limit * std::abs(limit));

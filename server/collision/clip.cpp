@@ -21,7 +21,7 @@ bool cross_side(const Four& p, const Four& q, double outside, double next_outsid
 void ClipPolygon::add_vertex(const Vec3& p, std::uint32_t vertex, std::uint32_t mark) {
   const std::uint32_t name = name_vertex(!reference_is_a_, vertex);
   Vertex& added = loops_[0][static_cast<std::size_t>(count_)];
-  added = {four(p.x(), p.y(), p.z()), name, vertex, vertex, false, mark, mark};
+  added = {four(p), name, vertex, vertex, false, mark, mark};
   if (count_ > 0) {
     Vertex& before = loops_[0][static_cast<std::size_t>(count_ - 1)];
     before.head = vertex;

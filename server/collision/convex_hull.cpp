@@ -232,6 +232,13 @@ void add_fours(ConvexHull& hull) {
   put_in_fours(hull.faces, hull.face_fours.data());
 }
 
+void set_corners(ConvexHull& hull, std::span<const Vec3> corners) {
+  hull.vertices.assign(corners.begin(), corners.end());
+  add_fours(hull);
+  hull.radius = 0.0;
+  for (const Vec3& corner : corners) hull.radius = std::max(hull.radius, corner.norm());
+}
+
 Lowest scan_lowest(std::span<const FourVectors> vertices, const Vec3& d) {
   FirstLowest lowest;
   for (const FourVectors& v : vertices) lowest.look_at(dot(v, d));

@@ -16,8 +16,8 @@ FourFlags of_next_corner(const FourFlags& flags) {
 }
 
 /// The edges, which gain dx, against the sides across one axis: `side` at +h and `side` + 2 at -h.
-struct Crossings {
-  Crossings(const Four& x, const Four& dx, double h, double tolerance, int side) {
+struct SideCrossings {
+  SideCrossings(const Four& x, const Four& dx, double h, double tolerance, int side) {
     const Four to_upper = h - x, to_lower = -h - x, per_dx = 1.0 / dx;
     const FourFlags above = to_upper<four(-tolerance), below = to_lower> four(tolerance);
     const FourFlags next_above = of_next_corner(above), next_below = of_next_corner(below);
@@ -72,7 +72,7 @@ RectangleClip::RectangleClip(const Parallelogram& p, double h1, double h2, doubl
   };
   const FourVectors corners = {corner_at(0), corner_at(1), corner_at(2)};
   const FourVectors along = {edge_along(0), edge_along(1), edge_along(2)};
-  const Crossings x(corners.x, along.x, h1, tolerance, 0), y(corners.y, along.y, h2, tolerance, 1);
+  const SideCrossings x(corners.x, along.x, h1, tolerance, 0), y(corners.y, along.y, h2, tolerance, 1);
   const Four t_entry = larger(x.t_entry, y.t_entry), t_exit = smaller(x.t_exit, y.t_exit);
   const FourFlags visible = ~(x.missed | y.missed) & (t_entry < t_exit);
   places[corner] = corners;

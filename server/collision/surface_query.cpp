@@ -14,15 +14,10 @@ namespace {
 /// A triangle with nothing but its corners, which is what supports ask for; filled anew for one after the other.
 class SurfaceFacet {
  public:
-  SurfaceFacet() : hull_(std::make_shared<ConvexHull>()), shape_(HullPointer(hull_)) {
-    hull_->vertices.resize(3);
-  }
+  SurfaceFacet() : hull_(std::make_shared<ConvexHull>()), shape_(HullPointer(hull_)) {}
 
   const Shape& of(const SurfaceTriangle& triangle) {
-    std::copy(triangle.corner.begin(), triangle.corner.end(), hull_->vertices.begin());
-    add_fours(*hull_);
-    hull_->radius = 0.0;
-    for (const Vec3& corner : triangle.corner) hull_->radius = std::max(hull_->radius, corner.norm());
+    set_corners(*hull_, triangle.corner);
     return shape_;
   }
 

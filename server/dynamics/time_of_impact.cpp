@@ -197,10 +197,7 @@ class Search {
 
   static Shape triangle(const TriangleSurface& surface, std::uint32_t part) {
     auto hull = std::make_shared<ConvexHull>();
-    const SurfaceTriangle triangle = surface.triangle(part);
-    hull->vertices.assign(triangle.corner.begin(), triangle.corner.end());
-    for (const Vec3& corner : triangle.corner) hull->radius = std::max(hull->radius, corner.norm());
-    add_fours(*hull);
+    set_corners(*hull, surface.triangle(part).corner);
     return HullPointer(hull);
   }
 

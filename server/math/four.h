@@ -29,6 +29,9 @@ inline Four four(const std::array<double, 4>& x) {
 inline Four four(double x, double y, double z) {
   return Four{x, y, z, z};
 }
+inline Four four(const Vec3& v) {
+  return four(v.x(), v.y(), v.z());
+}
 inline Four load_four(const double* from) {
   return *reinterpret_cast<const FourInMemory*>(from);
 }

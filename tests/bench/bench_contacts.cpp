@@ -1,8 +1,8 @@
 // What one query of the narrow phase costs, beside plain libccd's penetration queries and, for boxes, Bullet's and ODE's
 // box-box functions on the same pairs, all in double precision, from the pose of B as quaternion and position to the
-// contact. 512 pairs a class, one after the other in the same order again and again, which a processor learns by heart; with
-// `--shuffled` in an order that never comes back, as in a scene. "cold" forgets the pair before each query; the others keep each pair's memory, while
-// nothing moves or, where a pace is given, while B moves a little with every query.
+// contact. 512 pairs a class, one after the other in the same order again and again, which a processor learns by heart;
+// with `--shuffled` in an order that never comes back, as in a scene. "cold" forgets the pair before each query; the others
+// keep each pair's memory, while nothing moves or, where a pace is given, while B moves a little with every query.
 // `--queries=N` runs every benchmark exactly so often: two such runs under callgrind differ by the instructions of the
 // queries between them (run_benchmarks.py).
 #include <BulletCollision/CollisionDispatch/btBoxBoxDetector.h>

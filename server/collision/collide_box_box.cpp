@@ -100,9 +100,8 @@ void measure_overhang(const BoxPair& pair, const BoxAxis& axis, const FacingFace
 }
 
 /// The contact along the axis that separates most, by at most the margin.
-Manifold touch_along(const BoxPair& pair, const BoxAxis& axis, const Pose& X_AB, double margin,
-                     PairCache& cache) {
-  FacingFaces faces(pair, axis);
+Manifold touch_along(const BoxPair& pair, const BoxAxis& axis, FacingFaces& faces, const Pose& X_AB,
+                     double margin, PairCache& cache) {
   Manifold manifold = make_manifold(pair, axis, faces, margin);
   AxisContact contact{manifold, axis.separation, pair.size, faces.lie_face_to_face()};
   if (contact.separation > 0.0 && contact.face_to_face) measure_overhang(pair, axis, faces, contact);
@@ -126,10 +125,11 @@ Manifold touch_along(const BoxPair& pair, const BoxAxis& axis, const Pose& X_AB,
 Manifold collide_box_box(const Box& a, const Box& b, const Pose& X_AB, double margin, PairCache& cache) {
   const BoxPair pair(a, b, X_AB);
   const BoxAxis axis = find_axis(pair, margin);
-  cache.axis_A = normal_A(pair, axis);
+  FacingFaces faces(pair, axis);
+  cache.axis_A = faces.normal_A;
   cache.gap = axis.separation;
   if (axis.separation > margin) return {};
-  return touch_along(pair, axis, X_AB, margin, cache);
+  return touch_along(pair, axis, faces, X_AB, margin, cache);
 }
 
 }  // namespace tumble

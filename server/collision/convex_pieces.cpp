@@ -1,11 +1,10 @@
 // See convex_pieces.h. S is the shape's own frame; d its direction there.
 #include "collision/convex_pieces.h"
 
+#include "collision/nearest_surface.h"
+
 namespace tumble {
 namespace {
-
-// Pieces of round shapes; of boxes and hulls they are the vertices.
-constexpr std::uint32_t kLow = 0, kHigh = 1;
 
 struct Rounding {
   template <typename S>
@@ -32,11 +31,11 @@ struct PieceOf {
   }
   std::uint32_t operator()(const Sphere&) const { return 0; }
   std::uint32_t operator()(const Ellipsoid&) const { return 0; }
-  std::uint32_t operator()(const Capsule&) const { return std::signbit(d.z()) ? kLow : kHigh; }
-  std::uint32_t operator()(const Cylinder&) const { return std::signbit(d.z()) ? kLow : kHigh; }
+  std::uint32_t operator()(const Capsule&) const { return std::signbit(d.z()) ? kLowPiece : kHighPiece; }
+  std::uint32_t operator()(const Cylinder&) const { return std::signbit(d.z()) ? kLowPiece : kHighPiece; }
   std::uint32_t operator()(const Cone& c) const {
     const double across = std::sqrt(d.x() * d.x() + d.y() * d.y());
-    return 2.0 * c.half_length * d.z() >= c.radius * across ? kHigh : kLow;
+    return 2.0 * c.half_length * d.z() >= c.radius * across ? kHighPiece : kLowPiece;
   }
   std::uint32_t operator()(const Box&) const {
     return (std::signbit(d.x()) ? 0u : 1u) | (std::signbit(d.y()) ? 0u : 2u) |
@@ -51,7 +50,7 @@ struct PointOf {
   const Vec3& d;
   std::uint32_t piece;
 
-  double side(double length) const { return piece == kLow ? -length : length; }
+  double side(double length) const { return piece == kLowPiece ? -length : length; }
   template <typename Other>
   Vec3 operator()(const Other&) const {
     return Vec3::Zero();
@@ -60,7 +59,7 @@ struct PointOf {
   Vec3 operator()(const Capsule& c) const { return {0.0, 0.0, side(c.half_length)}; }
   Vec3 operator()(const Cylinder& c) const { return on_rim(d, c.radius, side(c.half_length)); }
   Vec3 operator()(const Cone& c) const {
-    return piece == kHigh ? Vec3(0, 0, c.half_length) : on_rim(d, c.radius, -c.half_length);
+    return piece == kHighPiece ? Vec3(0, 0, c.half_length) : on_rim(d, c.radius, -c.half_length);
   }
   Vec3 operator()(const Box& b) const {
     const Vec3& h = b.half_extents;
@@ -83,7 +82,7 @@ struct CurvatureOf {
   }
   Curvature operator()(const Cylinder& c) const { return of_rim(c.radius); }
   Curvature operator()(const Cone& c) const {
-    return piece == kHigh ? Curvature{0.0, 0.0, 0.0} : of_rim(c.radius);
+    return piece == kHighPiece ? Curvature{0.0, 0.0, 0.0} : of_rim(c.radius);
   }
   /// Second derivative of |a d|: (D - p p^T) / |a d| with D = diag(a^2) and the furthest point p.
   Curvature operator()(const Ellipsoid& e) const {
@@ -98,6 +97,47 @@ struct CurvatureOf {
     const double tu = d.x() * u.y() - d.y() * u.x(), tv = d.x() * v.y() - d.y() * v.x();
     return Curvature{tu * tu, tu * tv, tv * tv} * (radius / (across2 * std::sqrt(across2)));
   }
+};
+
+/// Normal of the flat face that looks most along d.
+struct FaceTowards {
+  const Vec3& d;
+
+  template <typename Round>
+  std::optional<Vec3> operator()(const Round&) const {
+    return std::nullopt;
+  }
+  std::optional<Vec3> operator()(const Box&) const {
+    int axis = 0;
+    d.cwiseAbs().maxCoeff(&axis);
+    return Vec3(std::copysign(1.0, d[axis]) * Vec3::Unit(axis));
+  }
+  std::optional<Vec3> operator()(const HullPointer& h) const {
+    const Polytope view = view_of(*h);
+    return view.faces[tumble::face_towards(view, d)].normal;
+  }
+  std::optional<Vec3> operator()(const Cylinder&) const { return Vec3(0, 0, std::copysign(1.0, d.z())); }
+  std::optional<Vec3> operator()(const Cone&) const {
+    return d.z() < 0.0 ? std::optional(Vec3(0, 0, -1)) : std::nullopt;
+  }
+};
+
+struct DepthOf {
+  const Vec3& p;
+
+  template <typename Other>  // points and segments
+  double operator()(const Other&) const {
+    return -kInfinity;
+  }
+  double operator()(const Box& b) const { return (b.half_extents - p.cwiseAbs()).minCoeff(); }
+  double operator()(const HullPointer& h) const {
+    double depth = kInfinity;
+    for (const ConvexHull::Face& face : h->faces) depth = std::min(depth, face.offset - face.normal.dot(p));
+    return depth;
+  }
+  double operator()(const Cylinder& c) const { return -nearest_surface(c, p).distance; }
+  double operator()(const Cone& c) const { return -nearest_surface(c, p).distance; }
+  double operator()(const Ellipsoid& e) const { return -nearest_surface(e, p).distance; }
 };
 
 }  // namespace
@@ -130,6 +170,22 @@ Curvature ConvexPieces::curvature(std::uint32_t piece, const Vec3& n_A, const Ve
   const Mat3 R_SA = R_.transpose();
   const Vec3 d = R_SA * n_A, u = R_SA * u_A, v = R_SA * v_A;
   return std::visit(CurvatureOf{d, u, v, piece}, *shape_);
+}
+
+bool ConvexPieces::has_cap(double side) const {
+  if (shape_ == nullptr) return false;
+  return std::holds_alternative<Cylinder>(*shape_) || (side < 0.0 && std::holds_alternative<Cone>(*shape_));
+}
+
+std::optional<Vec3> ConvexPieces::face_towards(const Vec3& n_A) const {
+  const Vec3 d = R_.transpose() * n_A;
+  const std::optional<Vec3> normal = shape_ ? std::visit(FaceTowards{d}, *shape_) : std::nullopt;
+  return normal ? std::optional(Vec3(R_ * *normal)) : normal;
+}
+
+double ConvexPieces::depth(const Vec3& p_A) const {
+  const Vec3 p_S = R_.transpose() * (p_A - p_);
+  return shape_ ? std::visit(DepthOf{p_S}, *shape_) : -kInfinity;
 }
 
 }  // namespace tumble

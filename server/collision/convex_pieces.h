@@ -19,6 +19,9 @@ struct Curvature {
   bool is_positive(double t) const { return uu + vv > 2.0 * t && (uu - t) * (vv - t) > uv * uv; }
 };
 
+/// Pieces of round shapes: rims and ends, of a cone the rim and the apex. Of boxes and hulls pieces are the vertices.
+inline constexpr std::uint32_t kLowPiece = 0, kHighPiece = 1;
+
 class ConvexPieces {
  public:
   /// Not for half-spaces and surfaces. Keeps a reference to the shape.
@@ -37,11 +40,15 @@ class ConvexPieces {
   /// The matrix W = d point / d n in two directions u, v across n: symmetric, positive semi-definite, 0 for vertices,
   /// infinite for a rim that is seen along its axis.
   Curvature curvature(std::uint32_t piece, const Vec3& n_A, const Vec3& u_A, const Vec3& v_A) const;
+  /// How far a point inside is from the core's surface [m], and so the radius of the ball around it that lies in the core;
+  /// < 0 outside. What is flat or a segment has no inside.
+  double depth(const Vec3& p_A) const;
   /// What lies around the core on all sides.
   double rounding() const { return rounding_; }
-  /// Is its lowest, highest face across z a disc?
-  bool has_cap_below() const { return has_cap_above() || (shape_ && std::holds_alternative<Cone>(*shape_)); }
-  bool has_cap_above() const { return shape_ && std::holds_alternative<Cylinder>(*shape_); }
+  /// Is its face across z on this side (-1 or 1) a disc?
+  bool has_cap(double side) const;
+  /// Normal of its flat face that looks most along n; none if it is round, or flat itself.
+  std::optional<Vec3> face_towards(const Vec3& n_A) const;
   const Mat3& R() const { return R_; }
   const Vec3& p() const { return p_; }
   /// No point is further from the origin of its frame, roundings included [m].

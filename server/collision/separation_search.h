@@ -5,13 +5,10 @@
 // polytope inside the difference (difference_hull.h) bounds h from below everywhere and so says where a better direction
 // could still hide; Newton steps on the pieces that are furthest (convex_pieces.h) find the exact optimum there. While
 // s > 0 there is one optimum; in an overlap there can be many, and the search ends when the polytope rules out all but
-// the best.
+// the best, or as soon as the best has a proof of its own (depth_proof.h), which most have.
 #pragma once
 
-#include <array>
-
 #include "collision/convex_pieces.h"
-#include "collision/difference_hull.h"
 
 namespace tumble {
 
@@ -22,15 +19,12 @@ struct Separation {
   /// They are where the shapes meet. Else the search ended before it knew more than the depth: where shapes of very
   /// different size touch, or all directions round an axis are nearly as good.
   bool exact = false;
-  /// Pieces that are furthest along the normal: one where the difference is smooth, two on its ridges, three on faces.
-  int count = 0;
-  std::array<PiecePair, 3> pieces;
-  /// Every direction but those of this optimum separates less by at least this much [m]; <= 0: unknown.
-  double lead = 0.0;
-  int evaluations = 0;  ///< Furthest points asked of the pair, for tests and benchmarks.
+  bool proven = false;  ///< The depth was proven from the place of contact alone.
 };
 
 /// `guess`: a direction to start from (unit). Ends early with any direction that separates by more than `enough` [m].
-Separation find_separation(const ConvexPieces& a, const ConvexPieces& b, const Vec3& guess, double enough);
+/// Without `use_proof` every direction is ruled out one by one: the same answer up to rounding, but later.
+Separation find_separation(const ConvexPieces& a, const ConvexPieces& b, const Vec3& guess, double enough,
+                           bool use_proof = true);
 
 }  // namespace tumble

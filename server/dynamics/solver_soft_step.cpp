@@ -13,7 +13,7 @@
 namespace tumble {
 namespace {
 
-constexpr double kMostSubSteps =
+constexpr double kMostSoftSubSteps =
     400.0;                          // the longest step allowed, 0.1 s, by the sub-step of the exact level
 constexpr double kRounding = 1e-9;  // of a step that is meant to be a whole number of sub-steps
 constexpr double kPushSpeed = 3.0;  // [m/s] as BoundSettings::push_speed by default
@@ -307,7 +307,7 @@ void SoftStep::solve() {
 
 SolverReport solve_soft_step(ContactProblem& problem, const SolverSettings& settings) {
   const double shortest = std::ceil(problem.h / settings.longest_sub_step - kRounding);
-  const int sub_steps = std::max(settings.sub_steps, static_cast<int>(std::min(shortest, kMostSubSteps)));
+  const int sub_steps = std::max(settings.sub_steps, static_cast<int>(std::min(shortest, kMostSoftSubSteps)));
   SoftStep(problem, sub_steps).solve();
   SolverReport report;
   report.sweeps = 2 * sub_steps;

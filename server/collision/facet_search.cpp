@@ -19,8 +19,8 @@ constexpr double kLeastDisc = 1e-4;
 constexpr std::size_t kKeptFours = 128;
 /// From so many pairs of edges on it pays to look for a better point against each edge.
 constexpr std::size_t kManyPairs = 256;
-/// Of a walk between faces and corners. If two don't end it, edges win.
-constexpr int kWalkRounds = 2;
+/// Of a walk between faces and corners. If three don't end it, edges win.
+constexpr int kWalkRounds = 3;
 /// Larger indices are not remembered in the 32-bit feature: such hulls are searched without a seed.
 constexpr std::uint32_t kIndexBits = 15, kIndexLimit = 1u << kIndexBits;
 
@@ -160,6 +160,8 @@ class FacetSearch {
   std::size_t thin_out(bool of_a, ArcBlock& block, std::size_t count);
   Touch touch_of_face(const Facet& facet) const;
   Touch touch_of_edges(const Facet& facet) const;
+  double lead_by_disc(const Facet& facet, const Touch& touch) const;
+  double lead_by_ball(const Facet& facet) const;
   void be_not_along(const Vec3& face_normal, const Facet& facet, Touch& touch) const;
 
   void offer(const Facet& facet);
@@ -405,26 +407,40 @@ void FacetSearch::be_not_along(const Vec3& face_normal, const Facet& facet, Touc
   if (sine * touch.clearance <= 4.0 * tie_) touch.clearance = -1.0;
 }
 
-/// For a facet that is proven to win: how much may move until something else does (as FacetAnswer::lead), else < 0.
-///
 /// The origin lies at depth d under a disc of the facet with radius c, which is part of A - B. Along a direction at an
 /// angle x to the facet's normal A - B reaches d cos x + c sin x at least, which is more than d up to x = 2 atan(c / d):
 /// if c > 2 d, up to 126 degrees. For all others there must be some point of A - B deep enough on the other side. Apart,
 /// c > 0 says that the distance itself is along the normal.
-double FacetSearch::prove(const Facet& facet) const {
-  const Touch touch = facet.kind == Facet::Kind::edges ? touch_of_edges(facet) : touch_of_face(facet);
+double FacetSearch::lead_by_disc(const Facet& facet, const Touch& touch) const {
   const double d = std::max(0.0, -facet.separation);
   const double disc = touch.clearance - 2.0 * d - kLeastDisc * b_.polytope.radius;
-  if (disc < 0.0) return -1.0;
-  const double lead = std::min(disc, touch.lead);
-  if (d == 0.0) return lead;
+  if (disc < 0.0 || d == 0.0) return disc;
   // A point at height -y below the origin and x beside it, as seen from the directions beyond 126 degrees.
   const auto reach = [&](const Vec3& p) {
     const double y = -facet.normal_A.dot(p), x = std::sqrt(std::max(0.0, p.squaredNorm() - y * y));
     return 0.6 * y - 0.8 * x;
   };
   const Vec3 centre_b = R_ * b_.polytope.centre + p_;
-  return std::min(lead, std::max(reach(a_.polytope.centre - touch.p_b), reach(touch.p_a - centre_b)) - d);
+  return std::min(disc, std::max(reach(a_.polytope.centre - touch.p_b), reach(touch.p_a - centre_b)) - d);
+}
+
+/// The corner lies at depth d behind the face and deeper behind all others of its body: a ball of that radius about it is
+/// inside, and so no way out is shorter.
+double FacetSearch::lead_by_ball(const Facet& facet) const {
+  if (facet.kind == Facet::Kind::edges || facet.separation > 0.0) return -1.0;
+  const bool of_a = facet.kind == Facet::Kind::face_a;
+  const double deeper = of_a ? depth_behind_others(a_.polytope, facet.a, corner_of_b())
+                             : depth_behind_others(b_.polytope, facet.b, in_b(corner_of_a()));
+  return deeper + facet.separation - 4.0 * tie_;
+}
+
+/// For a facet that is proven to win: how much may move until something else does (as FacetAnswer::lead), else < 0.
+double FacetSearch::prove(const Facet& facet) const {
+  if (facet.separation < needed()) return -1.0;
+  const Touch touch = facet.kind == Facet::Kind::edges ? touch_of_edges(facet) : touch_of_face(facet);
+  if (touch.clearance < 0.0) return -1.0;
+  const double lead = std::max(lead_by_disc(facet, touch), lead_by_ball(facet));
+  return lead < 0.0 ? -1.0 : std::min(lead, touch.lead);
 }
 
 FacetAnswer FacetSearch::search(double margin, const Facet& seed) {

@@ -231,6 +231,19 @@ double height_beside_face(const Polytope& polytope, std::uint32_t face, const Ve
   return height;
 }
 
+double depth_behind_others(const Polytope& polytope, std::uint32_t face, const Vec3& p) {
+  Four least = four(kInfinity);
+  for (std::size_t i = 0; i < polytope.face_fours.size(); ++i) {
+    Four depth = polytope.face_fours[i].offset - dot(polytope.face_fours[i].normal, p);
+    // The first faces come again after the last.
+    for (const std::size_t own : {std::size_t{face}, face + polytope.faces.size()}) {
+      if (own / 4 == i) depth[own % 4] = kInfinity;
+    }
+    least = smaller(depth, least);
+  }
+  return std::min({least[0], least[1], least[2], least[3]});
+}
+
 PointDistance compute_distance(const Polytope& polytope, const Vec3& p, double enough) {
   double highest = -kInfinity;
   std::uint32_t nearest = 0;

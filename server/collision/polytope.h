@@ -92,6 +92,9 @@ bool is_over_face(const Polytope& polytope, std::uint32_t face, const Vec3& p);
 /// How far the foot of p on the face's plane lies beside the face, by the lines of its edges [m]; < 0 inside.
 double height_beside_face(const Polytope& polytope, std::uint32_t face, const Vec3& p);
 
+/// How deep p lies behind the nearest face but this one [m]; < 0: beyond one of them.
+double depth_behind_others(const Polytope& polytope, std::uint32_t face, const Vec3& p);
+
 struct PointDistance {
   double distance;  ///< < 0 inside [m].
   Vec3 normal;      ///< Unit, out of the polytope towards the point.

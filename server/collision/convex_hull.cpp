@@ -235,8 +235,13 @@ void add_fours(ConvexHull& hull) {
 void set_corners(ConvexHull& hull, std::span<const Vec3> corners) {
   hull.vertices.assign(corners.begin(), corners.end());
   add_fours(hull);
-  hull.radius = 0.0;
-  for (const Vec3& corner : corners) hull.radius = std::max(hull.radius, corner.norm());
+  hull.radius = bounding_radius(corners);
+}
+
+double bounding_radius(std::span<const Vec3> points) {
+  double radius = 0.0;
+  for (const Vec3& p : points) radius = std::max(radius, p.norm());
+  return radius;
 }
 
 Lowest scan_lowest(std::span<const FourVectors> vertices, const Vec3& d) {
@@ -280,8 +285,8 @@ void add_topology(ConvexHull& hull) {
   for (ConvexHull::Face& face : hull.faces) face.width = compute_width(hull, face);
   for (const Vec3& vertex : hull.vertices) {
     hull.centre += vertex / static_cast<double>(hull.vertices.size());
-    hull.radius = std::max(hull.radius, vertex.norm());
   }
+  hull.radius = bounding_radius(hull.vertices);
   add_fours(hull);
 }
 

@@ -56,6 +56,9 @@ void set_corners(ConvexHull& hull, std::span<const Vec3> corners);
 void put_in_fours(std::span<const Vec3> vertices, FourVectors* fours);
 void put_in_fours(std::span<const ConvexHull::Face> faces, ConvexHull::FourFaces* fours);
 
+/// Largest |point| [m].
+double bounding_radius(std::span<const Vec3> points);
+
 /// Of a face, the inradius of regular shapes [m].
 double compute_width(const ConvexHull& hull, const ConvexHull::Face& face);
 

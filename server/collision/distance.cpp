@@ -15,35 +15,44 @@ namespace {
 /// Planes are equally far apart within this share of the rounding.
 constexpr double kPlaneTie = 0.25;
 
-/// A shape without its rounding.
+/// A shape without its rounding, or a triangle.
 class Core {
  public:
-  explicit Core(const Shape& shape) : shape_(shape) {
+  explicit Core(const Shape& shape) : shape_(&shape), bounding_radius_(tumble::bounding_radius(shape)) {
     if (const auto* sphere = std::get_if<Sphere>(&shape)) radius_ = sphere->radius;
     if (const auto* capsule = std::get_if<Capsule>(&shape)) radius_ = capsule->radius, segment_ = capsule;
   }
+  explicit Core(const std::array<Vec3, 3>& corners)
+      : corners_(&corners), bounding_radius_(tumble::bounding_radius(corners)) {
+    put_in_fours(corners, &corner_fours_);
+  }
   double radius() const { return radius_; }
+  /// With the rounding.
+  double bounding_radius() const { return bounding_radius_; }
   Vec3 support(const Vec3& d) const {
+    if (corners_ != nullptr) return (*corners_)[scan_lowest({&corner_fours_, 1}, -d).vertex];
     if (segment_ != nullptr) return {0.0, 0.0, std::copysign(segment_->half_length, d.z())};
-    return radius_ > 0.0 ? Vec3(Vec3::Zero()) : tumble::support(shape_, d);
+    return radius_ > 0.0 ? Vec3(Vec3::Zero()) : tumble::support(*shape_, d);
   }
 
  private:
-  const Shape& shape_;
-  double radius_ = 0.0;
+  const Shape* shape_ = nullptr;
   const Capsule* segment_ = nullptr;
+  const std::array<Vec3, 3>* corners_ = nullptr;
+  FourVectors corner_fours_ = {};
+  double radius_ = 0.0, bounding_radius_;
 };
 
 class DistanceSearch {
  public:
-  DistanceSearch(const Shape& a, const Shape& b, const Pose& X_AB, const DistanceSettings& settings)
+  DistanceSearch(const Core& a, const Core& b, const Pose& X_AB, const DistanceSettings& settings)
       : a_(a),
         b_(b),
         R_AB_(rotation_matrix(X_AB.q)),
         p_AB_(X_AB.p),
         settings_(settings),
         radii_(a_.radius() + b_.radius()),
-        error_(kSeparationRounding * (bounding_radius(a) + bounding_radius(b) + X_AB.p.norm())) {}
+        error_(kSeparationRounding * (a_.bounding_radius() + b_.bounding_radius() + X_AB.p.norm())) {}
 
   Distance run() {
     search(start());
@@ -136,7 +145,12 @@ class DistanceSearch {
 
 Distance compute_distance(const Shape& a, const Shape& b, const Pose& X_AB,
                           const DistanceSettings& settings) {
-  return DistanceSearch(a, b, X_AB, settings).run();
+  return DistanceSearch(Core(a), Core(b), X_AB, settings).run();
+}
+
+Distance compute_distance(const Shape& a, const std::array<Vec3, 3>& corners, const Pose& X_AB,
+                          const DistanceSettings& settings) {
+  return DistanceSearch(Core(a), Core(corners), X_AB, settings).run();
 }
 
 }  // namespace tumble

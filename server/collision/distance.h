@@ -40,4 +40,8 @@ struct Distance {
 Distance compute_distance(const Shape& a, const Shape& b, const Pose& X_AB,
                           const DistanceSettings& settings = {});
 
+/// The same for B a triangle, given by its corners in its own frame.
+Distance compute_distance(const Shape& a, const std::array<Vec3, 3>& corners, const Pose& X_AB,
+                          const DistanceSettings& settings = {});
+
 }  // namespace tumble

@@ -149,9 +149,8 @@ void HeightField::build_pyramid() {
   }
 }
 
-void HeightField::query(const Aabb& bounds, std::vector<std::uint32_t>& triangles) const {
+void HeightField::visit(const Aabb& bounds, TriangleVisitor visitor) const {
   if (!bounds.overlaps(bounds_)) return;
-  const auto found = static_cast<std::ptrdiff_t>(triangles.size());
   const Vec3 corner = bounds_.lower;
   // One cell more on every side than the division says: its rounding must not lose any.
   const auto first = [](double x, double step) {
@@ -164,31 +163,30 @@ void HeightField::query(const Aabb& bounds, std::vector<std::uint32_t>& triangle
   const Cells cells{
       first(bounds.lower.x() - corner.x(), dx_), last(bounds.upper.x() - corner.x(), dx_, columns_ - 1),
       first(bounds.lower.y() - corner.y(), dy_), last(bounds.upper.y() - corner.y(), dy_, rows_ - 1)};
-  query_block(levels_.size(), 0, 0, cells, bounds, triangles);
-  std::sort(triangles.begin() + found, triangles.end());
+  visit_block(levels_.size(), 0, 0, cells, bounds, visitor);
 }
 
 /// Block (i, j) of 2^level cells a side; level 0 is a cell.
-void HeightField::query_block(std::size_t level, std::uint32_t i, std::uint32_t j, const Cells& cells,
-                              const Aabb& bounds, std::vector<std::uint32_t>& triangles) const {
+void HeightField::visit_block(std::size_t level, std::uint32_t i, std::uint32_t j, const Cells& cells,
+                              const Aabb& bounds, TriangleVisitor visitor) const {
   const std::uint64_t i0 = std::uint64_t{i} << level, j0 = std::uint64_t{j} << level,
                       side = std::uint64_t{1} << level;
   if (i0 >= cells.i1 || i0 + side <= cells.i0 || j0 >= cells.j1 || j0 + side <= cells.j0) return;
-  if (level == 0) return query_cell(i, j, bounds, triangles);
+  if (level == 0) return visit_cell(i, j, bounds, visitor);
   const Level& own = levels_[level - 1];
   const Range range = own.ranges[j * own.columns + i];
   if (range.high < bounds.lower.z() || range.low > bounds.upper.z()) return;
   for (std::uint32_t part = 0; part < 4; ++part) {
-    query_block(level - 1, 2 * i + part % 2, 2 * j + part / 2, cells, bounds, triangles);
+    visit_block(level - 1, 2 * i + part % 2, 2 * j + part / 2, cells, bounds, visitor);
   }
 }
 
-void HeightField::query_cell(std::uint32_t i, std::uint32_t j, const Aabb& bounds,
-                             std::vector<std::uint32_t>& triangles) const {
+void HeightField::visit_cell(std::uint32_t i, std::uint32_t j, const Aabb& bounds,
+                             TriangleVisitor visitor) const {
   for (std::uint32_t half = 0; half < 2; ++half) {
     Aabb box;
     for (const std::uint32_t v : corners(i, j, half)) box = box.united({at(v), at(v)});
-    if (box.overlaps(bounds)) triangles.push_back(2 * (j * (columns_ - 1) + i) + half);
+    if (box.overlaps(bounds)) visitor(2 * (j * (columns_ - 1) + i) + half);
   }
 }
 

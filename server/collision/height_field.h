@@ -20,7 +20,7 @@ class HeightField final : public TriangleSurface {
   SurfaceTriangle triangle(std::uint32_t index) const override;
   bool is_top(std::uint32_t vertex, const Vec3& d) const override;
   std::size_t ring(std::uint32_t vertex, std::span<Vec3> others) const override;
-  void query(const Aabb& bounds, std::vector<std::uint32_t>& triangles) const override;
+  void visit(const Aabb& bounds, TriangleVisitor visitor) const override;
 
   std::uint32_t columns() const { return columns_; }
   std::uint32_t rows() const { return rows_; }
@@ -51,10 +51,9 @@ class HeightField final : public TriangleSurface {
   Vec3 normal_of(const std::array<std::uint32_t, 3>& corners) const;
   Range cell_range(std::uint32_t i, std::uint32_t j) const;
   void build_pyramid();
-  void query_block(std::size_t level, std::uint32_t i, std::uint32_t j, const Cells& cells,
-                   const Aabb& bounds, std::vector<std::uint32_t>& triangles) const;
-  void query_cell(std::uint32_t i, std::uint32_t j, const Aabb& bounds,
-                  std::vector<std::uint32_t>& triangles) const;
+  void visit_block(std::size_t level, std::uint32_t i, std::uint32_t j, const Cells& cells,
+                   const Aabb& bounds, TriangleVisitor visitor) const;
+  void visit_cell(std::uint32_t i, std::uint32_t j, const Aabb& bounds, TriangleVisitor visitor) const;
 
   std::uint32_t columns_, rows_;
   double dx_, dy_;

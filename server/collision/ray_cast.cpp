@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
 
 namespace tumble {
 namespace {
@@ -122,29 +121,29 @@ struct Cast {
   }
 
  private:
-  /// Piece by piece of the way through the surface's bounds, so that a long slanted ray does not gather all triangles. The
+  /// Piece by piece of the way through the surface's bounds, so that a long slanted ray does not visit all triangles. The
   /// back of a surface is not met. The feature is the triangle.
   std::optional<RayHit> cast_surface(const TriangleSurface& surface) const {
     constexpr int kPieces = 64;
     const double reach = 2.0 * surface.radius();
     const double from = std::max(start, -reach), to = std::min(start + length, reach);
-    std::vector<std::uint32_t> triangles;
     std::optional<RayHit> first;
+    const auto meet = [&](std::uint32_t index) {
+      const SurfaceTriangle t = surface.triangle(index);
+      const Ray ray{line.at(start), line.direction, first ? first->distance : length};
+      const auto hit = cast_ray_on_triangle(t.corner[0], t.corner[1], t.corner[2], ray);
+      if (!hit || hit->feature != 0) return;
+      // The ray ends at the first, so this is no further; of equals that of lowest index.
+      if (first && hit->distance == first->distance && index > first->feature) return;
+      first = RayHit{hit->distance, t.normal, index, false};
+    };
     const double step = (to - from) / kPieces;
     for (int piece = 0; piece < kPieces && from <= to; ++piece) {
       const double begin = from + piece * step;
       // What was met further on, on a triangle that reaches into an earlier piece, may yet have something before it.
       if (first && first->distance < begin - start) break;
       const Vec3 p = line.at(begin), q = line.at(begin + step);
-      triangles.clear();
-      surface.query(Aabb{p.cwiseMin(q), p.cwiseMax(q)}.grown(1e-9 * reach), triangles);
-      for (const std::uint32_t index : triangles) {
-        const SurfaceTriangle t = surface.triangle(index);
-        const Ray ray{line.at(start), line.direction, first ? first->distance : length};
-        const auto hit = cast_ray_on_triangle(t.corner[0], t.corner[1], t.corner[2], ray);
-        if (!hit || hit->feature != 0 || (first && hit->distance >= first->distance)) continue;
-        first = RayHit{hit->distance, t.normal, index, false};
-      }
+      surface.visit(Aabb{p.cwiseMin(q), p.cwiseMax(q)}.grown(1e-9 * reach), meet);
     }
     return first;
   }

@@ -14,7 +14,9 @@ namespace {
 /// Far more than is ever needed: at a grazing touch, the worst, every step halves the gap.
 constexpr int kSteps = 200;
 
-double rounding_of(const Shape& a, const Shape& b, const Pose& X_AB) {
+/// B: a shape, or the corners of a triangle.
+template <typename B>
+double rounding_of(const Shape& a, const B& b, const Pose& X_AB) {
   return kSeparationRounding * (bounding_radius(a) + bounding_radius(b) + X_AB.p.norm());
 }
 
@@ -49,20 +51,10 @@ std::optional<ShapeCastHit> judge_start(const Shape& a, const Shape& b, const Po
   return ShapeCastHit{.inside = inside, .normal_A = -manifold.normal_A, .p_A = deepest->p_A, .iterations = 1};
 }
 
-}  // namespace
-
-std::optional<ShapeCastHit> cast_shape(const Shape& a, const Shape& b, const Pose& X_AB, const Vec3& way_A) {
-  if (std::holds_alternative<HalfSpace>(b)) return cast_on_half_space(a, X_AB, way_A);
-  if (const TriangleSurface* surface = surface_of(b)) return cast_on_surface(a, *surface, X_AB, way_A);
-  const double round_off = rounding_of(a, b, X_AB);
-  if (compute_distance(a, b, X_AB, {.beyond = round_off}).lower <= round_off) {
-    return judge_start(a, b, X_AB, way_A, round_off);
-  }
-  return cast_from_apart(a, b, X_AB, way_A);
-}
-
-std::optional<ShapeCastHit> cast_from_apart(const Shape& a, const Shape& b, const Pose& X_AB,
-                                            const Vec3& way_A) {
+/// Of shapes that are apart. B: as above.
+template <typename B>
+std::optional<ShapeCastHit> advance_to_touch(const Shape& a, const B& b, const Pose& X_AB,
+                                             const Vec3& way_A) {
   // Steps end a little short of the plane, where the axis is still well defined; only the last goes all the way.
   const double ahead = 4.0 * rounding_of(a, b, X_AB);
   ShapeCastHit hit;
@@ -82,6 +74,28 @@ std::optional<ShapeCastHit> cast_from_apart(const Shape& a, const Shape& b, cons
     settings.start = distance.carriers;
   }
   return hit;
+}
+
+}  // namespace
+
+std::optional<ShapeCastHit> cast_shape(const Shape& a, const Shape& b, const Pose& X_AB, const Vec3& way_A) {
+  if (std::holds_alternative<HalfSpace>(b)) return cast_on_half_space(a, X_AB, way_A);
+  if (const TriangleSurface* surface = surface_of(b)) return cast_on_surface(a, *surface, X_AB, way_A);
+  const double round_off = rounding_of(a, b, X_AB);
+  if (compute_distance(a, b, X_AB, {.beyond = round_off}).lower <= round_off) {
+    return judge_start(a, b, X_AB, way_A, round_off);
+  }
+  return cast_from_apart(a, b, X_AB, way_A);
+}
+
+std::optional<ShapeCastHit> cast_from_apart(const Shape& a, const Shape& b, const Pose& X_AB,
+                                            const Vec3& way_A) {
+  return advance_to_touch(a, b, X_AB, way_A);
+}
+
+std::optional<ShapeCastHit> cast_from_apart(const Shape& a, const std::array<Vec3, 3>& corners,
+                                            const Pose& X_AB, const Vec3& way_A) {
+  return advance_to_touch(a, corners, X_AB, way_A);
 }
 
 }  // namespace tumble

@@ -4,6 +4,7 @@
 // way, and the steps are Newton's on it, from the safe side.
 #pragma once
 
+#include <array>
 #include <optional>
 
 #include "collision/shape.h"
@@ -26,5 +27,9 @@ std::optional<ShapeCastHit> cast_shape(const Shape& a, const Shape& b, const Pos
 /// The same for two shapes with ends that are apart at the start: only supports are asked of them.
 std::optional<ShapeCastHit> cast_from_apart(const Shape& a, const Shape& b, const Pose& X_AB,
                                             const Vec3& way_A);
+
+/// And for B a triangle, given by its corners in its own frame.
+std::optional<ShapeCastHit> cast_from_apart(const Shape& a, const std::array<Vec3, 3>& corners,
+                                            const Pose& X_AB, const Vec3& way_A);
 
 }  // namespace tumble

@@ -1,36 +1,17 @@
 // See surface_query.h.
 #include "collision/surface_query.h"
 
-#include <algorithm>
 #include <cmath>
-#include <memory>
-#include <vector>
+#include <utility>
 
 #include "math/rotation.h"
 
 namespace tumble {
 namespace {
 
-/// A triangle with nothing but its corners, which is what supports ask for; filled anew for one after the other.
-class SurfaceFacet {
- public:
-  SurfaceFacet() : hull_(std::make_shared<ConvexHull>()), shape_(HullPointer(hull_)) {}
-
-  const Shape& of(const SurfaceTriangle& triangle) {
-    set_corners(*hull_, triangle.corner);
-    return shape_;
-  }
-
- private:
-  std::shared_ptr<ConvexHull> hull_;
-  Shape shape_;
-};
-
-std::vector<std::uint32_t> triangles_near(const TriangleSurface& surface, const Aabb& bounds_B) {
-  std::vector<std::uint32_t> triangles;
-  surface.query(bounds_B, triangles);
-  return triangles;
-}
+/// A fraction or a distance, and the triangle it belongs to. Triangles come in any order: the least of these wins.
+using Rank = std::pair<double, std::uint32_t>;
+constexpr Rank kLast = {kInfinity, 0xffffffffu};
 
 /// Whether A only touches the triangle or reaches through, by its furthest point behind the plane.
 ShapeCastHit touched_at_start(const Shape& a, const SurfaceTriangle& triangle, const Pose& X_AB,
@@ -46,42 +27,48 @@ ShapeCastHit touched_at_start(const Shape& a, const SurfaceTriangle& triangle, c
 
 std::optional<ShapeCastHit> cast_on_surface(const Shape& a, const TriangleSurface& surface, const Pose& X_AB,
                                             const Vec3& way_A) {
-  const Mat3 R_AB = rotation_matrix(X_AB.q);
-  const Vec3 way_B = R_AB.transpose() * way_A;
-  SurfaceFacet facet;
+  const Vec3 way_B = rotation_matrix(X_AB.q).transpose() * way_A;
   std::optional<ShapeCastHit> first;
-  for (const std::uint32_t index : triangles_near(surface, compute_aabb(a, X_AB.inverse()).swept(way_B))) {
+  Rank least = kLast;
+  const auto meet = [&](std::uint32_t index) {
+    // Once something is met at the start, only a lower index can come before it.
+    if (least < Rank{0.0, index}) return;
     const SurfaceTriangle triangle = surface.triangle(index);
-    if (triangle.normal.dot(way_B) >= 0.0) continue;
-    const Shape& shape = facet.of(triangle);
-    const Distance start = compute_distance(a, shape, X_AB);
+    if (triangle.normal.dot(way_B) >= 0.0) return;
+    const Distance start = compute_distance(a, triangle.corner, X_AB);
     const auto hit = start.overlap ? std::optional(touched_at_start(a, triangle, X_AB, start))
-                                   : cast_from_apart(a, shape, X_AB, way_A);
-    if (hit && (!first || hit->fraction < first->fraction)) first = hit;
-    if (first && first->inside) break;
-  }
+                                   : cast_from_apart(a, triangle.corner, X_AB, way_A);
+    if (!hit || !(Rank{hit->fraction, index} < least)) return;
+    first = hit;
+    least = {hit->fraction, index};
+  };
+  surface.visit(compute_aabb(a, X_AB.inverse()).swept(way_B), meet);
   return first;
 }
 
 bool overlaps_surface(const Shape& a, const TriangleSurface& surface, const Pose& X_AB) {
-  SurfaceFacet facet;
-  const auto near = triangles_near(surface, compute_aabb(a, X_AB.inverse()));
-  return std::any_of(near.begin(), near.end(), [&](std::uint32_t index) {
-    return compute_distance(a, facet.of(surface.triangle(index)), X_AB).overlap;
-  });
+  bool overlap = false;
+  const auto look = [&](std::uint32_t index) {
+    overlap = overlap || compute_distance(a, surface.triangle(index).corner, X_AB).overlap;
+  };
+  surface.visit(compute_aabb(a, X_AB.inverse()), look);
+  return overlap;
 }
 
 Distance compute_distance(const Shape& a, const TriangleSurface& surface, const Pose& X_AB) {
   const Aabb bounds_B = compute_aabb(a, X_AB.inverse());
-  SurfaceFacet facet;
   const auto nearest_within = [&](double reach) {
     Distance nearest;
     nearest.upper = kInfinity;
-    for (const std::uint32_t index : triangles_near(surface, bounds_B.grown(reach))) {
+    Rank least = kLast;
+    const auto measure = [&](std::uint32_t index) {
       const Distance distance =
-          compute_distance(a, facet.of(surface.triangle(index)), X_AB, {.beyond = nearest.upper});
-      if (distance.upper < nearest.upper) nearest = distance;
-    }
+          compute_distance(a, surface.triangle(index).corner, X_AB, {.beyond = nearest.upper});
+      if (!(Rank{distance.upper, index} < least)) return;
+      nearest = distance;
+      least = {distance.upper, index};
+    };
+    surface.visit(bounds_B.grown(reach), measure);
     return nearest;
   };
   // What is found within some reach bounds the distance; all that is nearer lies within that bound.

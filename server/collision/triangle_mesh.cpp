@@ -240,8 +240,7 @@ std::size_t TriangleMesh::ring(std::uint32_t vertex, std::span<Vec3> others) con
   return count;
 }
 
-void TriangleMesh::query(const Aabb& bounds, std::vector<std::uint32_t>& triangles) const {
-  const auto found = static_cast<std::ptrdiff_t>(triangles.size());
+void TriangleMesh::visit(const Aabb& bounds, TriangleVisitor visitor) const {
   for (std::uint32_t i = 0; i < nodes_.size();) {
     const Node& node = nodes_[i];
     if (!node.bounds.overlaps(bounds)) {
@@ -249,11 +248,10 @@ void TriangleMesh::query(const Aabb& bounds, std::vector<std::uint32_t>& triangl
       continue;
     }
     for (std::uint32_t k = node.first; k < node.first + node.count; ++k) {
-      if (triangle_bounds(order_[k]).overlaps(bounds)) triangles.push_back(order_[k]);
+      if (triangle_bounds(order_[k]).overlaps(bounds)) visitor(order_[k]);
     }
     ++i;
   }
-  std::sort(triangles.begin() + found, triangles.end());
 }
 
 }  // namespace tumble

@@ -21,7 +21,7 @@ class TriangleMesh final : public TriangleSurface {
   SurfaceTriangle triangle(std::uint32_t index) const override;
   bool is_top(std::uint32_t vertex, const Vec3& d) const override;
   std::size_t ring(std::uint32_t vertex, std::span<Vec3> others) const override;
-  void query(const Aabb& bounds, std::vector<std::uint32_t>& triangles) const override;
+  void visit(const Aabb& bounds, TriangleVisitor visitor) const override;
 
   const std::vector<Vec3>& vertices() const { return vertices_; }
   const std::vector<Corners>& triangles() const { return triangles_; }

@@ -38,6 +38,22 @@ struct SurfaceTriangle {
 Bend classify_bend(const Vec3& normal, const Vec3& tail, const Vec3& head, const Vec3& beyond,
                    const Vec3& beyond_normal);
 
+/// A function that is told triangles, one after the other: anything that can be called with an index. Only referred to,
+/// so it takes no memory and is for passing on, not for keeping (the idea of function_ref, WG21 P0792).
+class TriangleVisitor {
+ public:
+  template <typename Visit>
+  TriangleVisitor(const Visit& visit)
+      : visit_(&visit), call_([](const void* object, std::uint32_t triangle) {
+          (*static_cast<const Visit*>(object))(triangle);
+        }) {}
+  void operator()(std::uint32_t triangle) const { call_(visit_, triangle); }
+
+ private:
+  const void* visit_;
+  void (*call_)(const void* object, std::uint32_t triangle);
+};
+
 class TriangleSurface {
  public:
   virtual ~TriangleSurface() = default;
@@ -48,8 +64,10 @@ class TriangleSurface {
   virtual bool is_top(std::uint32_t vertex, const Vec3& d) const = 0;
   /// Writes the vertices joined to `vertex` by an edge, as many as fit; returns how many.
   virtual std::size_t ring(std::uint32_t vertex, std::span<Vec3> others) const = 0;
-  /// Appends, ascending, the triangles whose bounds meet `bounds`.
-  virtual void query(const Aabb& bounds, std::vector<std::uint32_t>& triangles) const = 0;
+  /// Calls the visitor with each triangle whose bounds meet `bounds`, in an order of its own.
+  virtual void visit(const Aabb& bounds, TriangleVisitor visitor) const = 0;
+  /// Appends them, ascending.
+  void query(const Aabb& bounds, std::vector<std::uint32_t>& triangles) const;
 
   const Aabb& bounds() const { return bounds_; }
   /// Largest distance of a vertex from S's origin.

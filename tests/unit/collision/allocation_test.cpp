@@ -1,4 +1,4 @@
-// No query of two shapes takes memory from the heap: contacts, cold or warm, casts and distances.
+// No query of two shapes takes memory from the heap: contacts, cold or warm, casts and distances, also of surfaces.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -9,6 +9,7 @@
 #include "collision/narrow_phase.h"
 #include "collision/ray_cast.h"
 #include "collision/shape_cast.h"
+#include "collision/surface_query.h"
 #include "sample_hulls.h"
 #include "support/surface_meshes.h"
 
@@ -92,6 +93,32 @@ TEST(Allocation, NoCastOrDistanceAllocates) {
   EXPECT_EQ(allocation_count(), before);
   EXPECT_GT(rays, 1000);
   EXPECT_GT(casts, 300);
+  EXPECT_GT(apart, 500);
+}
+
+TEST(Allocation, NoSurfaceQueryAllocates) {
+  RandomPose random(63);
+  const std::vector<Shape> shapes = {Sphere{0.4}, Capsule{0.3, 0.6}, Box{Vec3(0.5, 0.3, 0.7)},
+                                     random_hull(random, 16, Vec3(0.6, 0.5, 0.7)), Cone{0.4, 0.5}};
+  const std::vector<Shape> surfaces = {
+      box_mesh(Vec3(1, 1, 1), 6),
+      std::make_shared<const HeightField>(12, 12, 0.25, 0.25, std::vector<double>(144, 0.1))};
+  int rays = 0, casts = 0, overlaps = 0, apart = 0;
+  const std::uint64_t before = allocation_count();
+  for (std::size_t i = 0; i < 1000; ++i) {
+    const Shape& a = shapes[i % shapes.size()];
+    const Shape& b = surfaces[i % surfaces.size()];
+    const Pose X_AB = random.pose(2.0);
+    const Vec3 d = random.direction();
+    rays += cast_ray(b, {-2.0 * d, d}).has_value();
+    casts += cast_shape(a, b, X_AB, X_AB.p).has_value();
+    overlaps += overlaps_surface(a, *surface_of(b), X_AB);
+    apart += !compute_distance(a, *surface_of(b), X_AB).overlap;
+  }
+  EXPECT_EQ(allocation_count(), before);
+  EXPECT_GT(rays, 500);
+  EXPECT_GT(casts, 500);
+  EXPECT_GT(overlaps, 100);
   EXPECT_GT(apart, 500);
 }
 

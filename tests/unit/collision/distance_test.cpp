@@ -123,6 +123,29 @@ TEST(Distance, RoundShapesInClosedForm) {
   EXPECT_LE(error, 3e-15);  // measured
 }
 
+/// Corners alone and a hull of nothing else: the same supports, the same bits.
+TEST(Distance, CornersAreATriangle) {
+  RandomPose random(6);
+  int overlaps = 0;
+  for (int i = 0; i < 200; ++i) {
+    const std::array<Vec3, 3> corners = {random.vector(-1, 1), random.vector(-1, 1), random.vector(-1, 1)};
+    const auto hull = std::make_shared<ConvexHull>();
+    set_corners(*hull, corners);
+    for (const Shape& a : random_shapes(random)) {
+      const Pose X_AB = random.pose(2.0);
+      const Distance expected = compute_distance(a, HullPointer(hull), X_AB);
+      const Distance distance = compute_distance(a, corners, X_AB);
+      EXPECT_EQ(distance.overlap, expected.overlap);
+      EXPECT_EQ(distance.lower, expected.lower);
+      EXPECT_EQ(distance.upper, expected.upper);
+      EXPECT_EQ(distance.a_A, expected.a_A);
+      EXPECT_EQ(distance.b_A, expected.b_A);
+      overlaps += distance.overlap;
+    }
+  }
+  EXPECT_GT(overlaps, 100);
+}
+
 /// Never "apart" when shapes overlap, and a common point of both to show for it.
 TEST(Distance, OverlapIsToldWithACommonPoint) {
   RandomPose random(4);

@@ -108,5 +108,33 @@ TEST(SurfaceQuery, StartsOnAndInTheSurface) {
   EXPECT_NEAR(compute_distance(small, *surface_of(skin), {}).upper, 0.9, 1e-15);
 }
 
+/// Six slopes round a peak at the origin, the first of them turned on by `turn`.
+TriangleMeshPointer peak_mesh(std::uint32_t turn) {
+  const std::vector<Vec3> vertices = {Vec3(0, 0, 0),       Vec3(1, 0, -0.5),  Vec3(0.5, 1, -0.5),
+                                      Vec3(-0.5, 1, -0.5), Vec3(-1, 0, -0.5), Vec3(-0.5, -1, -0.5),
+                                      Vec3(0.5, -1, -0.5)};
+  std::vector<TriangleMesh::Corners> triangles;
+  for (std::uint32_t i = turn; i < turn + 6; ++i) triangles.push_back({0, 1 + i % 6, 1 + (i + 1) % 6});
+  return std::make_shared<const TriangleMesh>(vertices, triangles);
+}
+
+/// In whatever order the surface's tree visits them.
+TEST(SurfaceQuery, OfEqualTrianglesTheLowestIndexAnswers) {
+  const Box box{Vec3::Constant(0.5)};
+  for (std::uint32_t turn = 0; turn < 6; ++turn) {
+    const TriangleMeshPointer peak = peak_mesh(turn);
+    const SurfaceTriangle lowest = peak->triangle(0);
+    const auto ray_hit = cast_ray(Shape(peak), {Vec3::UnitZ(), -Vec3::UnitZ()});
+    ASSERT_TRUE(ray_hit.has_value());
+    EXPECT_EQ(ray_hit->distance, 1.0);
+    EXPECT_EQ(ray_hit->feature, 0u);
+    const auto cast_hit = cast_shape(box, Shape(peak), {}, -Vec3::UnitZ());
+    ASSERT_TRUE(cast_hit.has_value());
+    EXPECT_TRUE(cast_hit->inside);
+    EXPECT_EQ(cast_hit->normal_A, lowest.normal);
+    EXPECT_EQ(compute_distance(box, *peak, {}).b_A, compute_distance(box, lowest.corner, {}).b_A);
+  }
+}
+
 }  // namespace
 }  // namespace tumble::test

@@ -232,12 +232,6 @@ void add_fours(ConvexHull& hull) {
   put_in_fours(hull.faces, hull.face_fours.data());
 }
 
-void set_corners(ConvexHull& hull, std::span<const Vec3> corners) {
-  hull.vertices.assign(corners.begin(), corners.end());
-  add_fours(hull);
-  hull.radius = bounding_radius(corners);
-}
-
 double bounding_radius(std::span<const Vec3> points) {
   double radius = 0.0;
   for (const Vec3& p : points) radius = std::max(radius, p.norm());

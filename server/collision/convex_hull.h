@@ -49,9 +49,6 @@ void add_topology(ConvexHull& hull);
 /// Fills in the fours from vertices and faces.
 void add_fours(ConvexHull& hull);
 
-/// Makes the hull one of nothing but these corners [m], which is all that supports ask for.
-void set_corners(ConvexHull& hull, std::span<const Vec3> corners);
-
 /// The fours of vertices and of faces; there must be room for (count + 3) / 4 of them.
 void put_in_fours(std::span<const Vec3> vertices, FourVectors* fours);
 void put_in_fours(std::span<const ConvexHull::Face> faces, ConvexHull::FourFaces* fours);

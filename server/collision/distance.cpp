@@ -153,4 +153,9 @@ Distance compute_distance(const Shape& a, const std::array<Vec3, 3>& corners, co
   return DistanceSearch(Core(a), Core(corners), X_AB, settings).run();
 }
 
+Distance compute_distance(const std::array<Vec3, 3>& corners, const Shape& b, const Pose& X_AB,
+                          const DistanceSettings& settings) {
+  return DistanceSearch(Core(corners), Core(b), X_AB, settings).run();
+}
+
 }  // namespace tumble

@@ -40,8 +40,10 @@ struct Distance {
 Distance compute_distance(const Shape& a, const Shape& b, const Pose& X_AB,
                           const DistanceSettings& settings = {});
 
-/// The same for B a triangle, given by its corners in its own frame.
+/// The same for B or A a triangle, given by its corners in its own frame.
 Distance compute_distance(const Shape& a, const std::array<Vec3, 3>& corners, const Pose& X_AB,
+                          const DistanceSettings& settings = {});
+Distance compute_distance(const std::array<Vec3, 3>& corners, const Shape& b, const Pose& X_AB,
                           const DistanceSettings& settings = {});
 
 }  // namespace tumble

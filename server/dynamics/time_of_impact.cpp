@@ -164,7 +164,8 @@ class Search {
   Search(const MovingShape& a, const MovingShape& b, const ImpactSearch& search)
       : a_(a), b_(b), ways_{&a.way, &b.way}, shapes_{&a.shape, &b.shape}, part_(search.part), to_(search.to) {
     size_ = extent(a.shape) + extent(b.shape);
-    if (const TriangleSurface* surface = surface_of(a.shape)) facet_ = triangle(*surface, search.part);
+    if (const TriangleSurface* surface = surface_of(a.shape))
+      corners_ = surface->triangle(search.part).corner;
   }
 
   std::optional<TimeOfImpact> run(double from) {
@@ -195,23 +196,17 @@ class Search {
                                                                                     : bounding_radius(shape);
   }
 
-  static Shape triangle(const TriangleSurface& surface, std::uint32_t part) {
-    auto hull = std::make_shared<ConvexHull>();
-    set_corners(*hull, surface.triangle(part).corner);
-    return HullPointer(hull);
-  }
-
   Vec3 acceleration() const { return ways_[1]->acceleration() - ways_[0]->acceleration(); }
 
   Look look_at(double left) {
     if (std::holds_alternative<HalfSpace>(*shapes_[0])) return look_at_plane();
-    const Shape& shape_a = facet_ ? *facet_ : *shapes_[0];
     const Pose X_AB = relative_pose(a_.pose(), b_.pose());
     const Vec3 v = b_.velocity() - a_.velocity();
     const double reach = left * (std::sqrt(v.squaredNorm()) + a_.turning_speed() + b_.turning_speed() +
                                  0.5 * left * std::sqrt(acceleration().squaredNorm()));
-    const Distance distance =
-        compute_distance(shape_a, *shapes_[1], X_AB, {.beyond = reach, .start = start_});
+    const DistanceSettings settings{.beyond = reach, .start = start_};
+    const Distance distance = corners_ ? compute_distance(*corners_, *shapes_[1], X_AB, settings)
+                                       : compute_distance(*shapes_[0], *shapes_[1], X_AB, settings);
     start_ = distance.carriers;
     if (!distance.overlap && distance.lower > reach) return {.state = Look::State::clear};
     const Vec3 n = a_.axes() * distance.axis_A;
@@ -258,7 +253,7 @@ class Search {
   std::array<const Shape*, 2> shapes_;
   std::uint32_t part_;
   double to_, size_ = 0.0;
-  std::optional<Shape> facet_;
+  std::optional<std::array<Vec3, 3>> corners_;  // of the triangle, if A is a surface
   Carriers start_;
   PairCache cache_;
   NarrowPhaseCounters counters_;

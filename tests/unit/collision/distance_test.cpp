@@ -130,7 +130,9 @@ TEST(Distance, CornersAreATriangle) {
   for (int i = 0; i < 200; ++i) {
     const std::array<Vec3, 3> corners = {random.vector(-1, 1), random.vector(-1, 1), random.vector(-1, 1)};
     const auto hull = std::make_shared<ConvexHull>();
-    set_corners(*hull, corners);
+    hull->vertices.assign(corners.begin(), corners.end());
+    hull->radius = bounding_radius(corners);
+    add_fours(*hull);
     for (const Shape& a : random_shapes(random)) {
       const Pose X_AB = random.pose(2.0);
       const Distance expected = compute_distance(a, HullPointer(hull), X_AB);

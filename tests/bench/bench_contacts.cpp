@@ -173,6 +173,9 @@ Pair box_cylinder_deep(Source& source) {
 Pair cylinder_cylinder(Source& source) {
   return touching(source, kCylinder, kCylinder, 1e-3);
 }
+Pair cylinder_pass(Source& source) {
+  return touching(source, kCylinder, kCylinder, source.uniform(-0.05, 0.02));
+}
 Pair cone_cylinder(Source& source) {
   return touching(source, kCone, kCylinder, 1e-3);
 }
@@ -458,11 +461,13 @@ void register_polytopes(Registry& registry) {
 
 void register_curved(Registry& registry) {
   registry.add_class("sphere_sphere", sphere_sphere);
+  registry.add("sphere_sphere/tumble", tumble_kept, sphere_sphere, 1e-6, NarrowPhaseOptions{});
   registry.add_class("cylinder_on_box", cylinder_on_box);
   registry.add_class("cylinder_resting", cylinder_on_box, 1e-6);
   registry.add_class("box_cylinder", box_cylinder);
   registry.add_class("box_cylinder_deep", box_cylinder_deep);
   registry.add_class("cylinder_cylinder", cylinder_cylinder);
+  registry.add_class("cylinder_moving", cylinder_pass, 2e-3);
   registry.add_class("cone_cylinder", cone_cylinder);
   registry.add_class("ellipsoid_ellipsoid", ellipsoid_ellipsoid);
   registry.add_class("ellipsoid_ellipsoid_deep", ellipsoid_ellipsoid_deep);

@@ -125,8 +125,8 @@ bool DirectionDescent::is_furthest(const CandidateDirection& candidate) const {
   return candidate.holds({a_.furthest(candidate.n).piece, b_.furthest(-candidate.n).piece});
 }
 
-/// Newton's method on the candidate's pieces. On a ridge it stops where a leap has come to other pieces: their corner may be
-/// the optimum, and the ridge's own lie far behind it.
+/// Stops where a leap has come to other pieces: their ridge or corner may be the optimum, and that of the candidate's own
+/// pieces lie far behind it.
 DirectionDescent::End DirectionDescent::converge(CandidateDirection& candidate) const {
   for (int i = 0; i < kNewtonSteps; ++i) {
     const Vec3 before = candidate.n;

@@ -17,10 +17,10 @@ inline constexpr double kLevelSlope = 1e-11;
 /// A direction that could be the best, with the pieces believed to be furthest there.
 struct CandidateDirection {
   Vec3 n = Vec3::UnitZ();
-  double h = kInfinity;
+  double h = kInfinity;  ///< How far A - B reaches along it [m].
   int count = 0;
   std::array<PiecePair, 3> pieces;
-  bool optimal = false;     ///< Newton's method ended here and no other piece reaches further.
+  bool optimal = false;     ///< No direction near it is better.
   Vec3 p_A = Vec3::Zero();  ///< If so, where the cores are nearest or deepest [m]: p_A - p_B = h n.
   Vec3 p_B = Vec3::Zero();
 

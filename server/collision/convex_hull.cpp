@@ -244,6 +244,21 @@ Lowest scan_lowest(std::span<const FourVectors> vertices, const Vec3& d) {
   return {lowest.index(), lowest.value()};
 }
 
+Lowest lowest_vertex(const ConvexHull& hull, const Vec3& d) {
+  if (hull.vertices.size() <= kScannedVertices) return scan_lowest(hull.vertex_fours, d);
+  Lowest lowest{0, d.dot(hull.vertices[0])};
+  // A vertex that no neighbour is below is the lowest of all: heights have no second minimum on a convex body.
+  for (bool descending = true; descending;) {
+    descending = false;
+    const std::uint32_t from = lowest.vertex;
+    for (std::uint32_t k = hull.neighbour_offsets[from]; k < hull.neighbour_offsets[from + 1]; ++k) {
+      const double height = d.dot(hull.vertices[hull.neighbours[k]]);
+      if (height < lowest.height) lowest = {hull.neighbours[k], height}, descending = true;
+    }
+  }
+  return lowest;
+}
+
 double compute_width(const ConvexHull& hull, const ConvexHull::Face& face) {
   double perimeter = 0.0, area2 = 0.0;
   const Vec3& origin = hull.vertices[hull.loops[face.first]];

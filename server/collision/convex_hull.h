@@ -70,6 +70,7 @@ struct Lowest {
 };
 /// Of at least one.
 Lowest scan_lowest(std::span<const FourVectors> vertices, const Vec3& d);
+Lowest lowest_vertex(const ConvexHull& hull, const Vec3& d);
 
 /// Hull of at least 4 points [m] that span a volume. Throws std::invalid_argument naming the cause and the point
 /// (fewer than 4 distinct points, non-finite coordinate, all in one plane within 1e-9 of their extent).

@@ -42,7 +42,7 @@ struct PieceOf {
            (std::signbit(d.z()) ? 0u : 4u);
   }
   std::uint32_t operator()(const HullPointer& h) const {
-    return descend(view_of(*h), -d, 0, -kInfinity).vertex;
+    return lowest_vertex(*h, -d).vertex;
   }
 };
 

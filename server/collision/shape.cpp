@@ -155,29 +155,6 @@ Vec3 rim_point(const Vec3& d, double r, double z) {
   return {d.x() * scale, d.y() * scale, z};
 }
 
-struct Furthest {
-  std::size_t vertex;
-  double height;  ///< Along d [m].
-};
-Furthest furthest_vertex(const ConvexHull& hull, const Vec3& d) {
-  if (hull.vertices.size() <= kScannedVertices) {
-    const Lowest lowest = scan_lowest(hull.vertex_fours, -d);
-    return {lowest.vertex, -lowest.height};
-  }
-  std::size_t best = 0;
-  double best_height = hull.vertices[0].dot(d);
-  // A vertex that no neighbour beats is the furthest of all: heights have no second maximum on a convex body.
-  for (bool climbing = true; climbing;) {
-    climbing = false;
-    const std::size_t from = best;
-    for (std::uint32_t k = hull.neighbour_offsets[from]; k < hull.neighbour_offsets[from + 1]; ++k) {
-      const double height = hull.vertices[hull.neighbours[k]].dot(d);
-      if (height > best_height) best = hull.neighbours[k], best_height = height, climbing = true;
-    }
-  }
-  return {best, best_height};
-}
-
 struct SupportPoint {
   const Vec3& d;
 
@@ -190,7 +167,7 @@ struct SupportPoint {
     return {std::copysign(b.half_extents.x(), d.x()), std::copysign(b.half_extents.y(), d.y()),
             std::copysign(b.half_extents.z(), d.z())};
   }
-  Vec3 operator()(const HullPointer& h) const { return h->vertices[furthest_vertex(*h, d).vertex]; }
+  Vec3 operator()(const HullPointer& h) const { return h->vertices[lowest_vertex(*h, -d).vertex]; }
   Vec3 operator()(const Cylinder& c) const {
     return rim_point(d, c.radius, std::copysign(c.half_length, d.z()));
   }
@@ -235,7 +212,7 @@ Vec3 support(const Shape& shape, const Vec3& d_S) {
 
 double extent_along(const Shape& shape, const Vec3& d_S) {
   if (const auto* box = std::get_if<Box>(&shape)) return box->half_extents.dot(d_S.cwiseAbs());
-  if (const auto* hull = std::get_if<HullPointer>(&shape)) return furthest_vertex(**hull, d_S).height;
+  if (const auto* hull = std::get_if<HullPointer>(&shape)) return -lowest_vertex(**hull, -d_S).height;
   return d_S.dot(support(shape, d_S));
 }
 

@@ -90,7 +90,8 @@ class Search {
   bool meets_best_only(const DifferenceHull::Face& face) const;
   bool is_narrow(const DifferenceHull::Face& face) const;
   bool explains(const DifferenceHull::Face& face, const Reach& reach) const;
-  bool falls_towards_best(const Reach& reach) const;
+  bool falls_towards_best(PiecePair pair, const Vec3& n) const;
+  bool has_no_own_minimum(PiecePair pair, const Vec3& n) const;
   template <typename Bends>
   bool is_one_valley(const Vec3& n, const Bends& bends) const;
   bool is_of_best_valley(const Vec3& n) const;
@@ -221,7 +222,7 @@ bool Search::explains(const DifferenceHull::Face& face, const Reach& reach) cons
   const auto is_of_reach = [&](std::uint16_t corner) { return hull_.corner(corner).pieces == reach.pieces; };
   if (!std::all_of(face.corners.begin(), face.corners.end(), is_of_reach)) return false;
   return is_one_valley(reach.n, [&](const Vec3& n) { return descent_.bends_up(reach.pieces, n); }) &&
-         (best_.count == 1 || falls_towards_best(reach));
+         (best_.count == 1 || falls_towards_best(reach.pieces, reach.n));
 }
 
 /// Whether the reach bends up along n and on the way from there to the best direction. A positive curvature at both ends does
@@ -237,19 +238,30 @@ bool Search::is_one_valley(const Vec3& n, const Bends& bends) const {
 /// From n to the best direction, which a search from there has found again.
 bool Search::is_of_best_valley(const Vec3& n) const {
   if (best_.count > 2) return true;
-  return is_one_valley(n, [&](const Vec3& m) {
-    if (best_.count == 1) return descent_.bends_up(best_.pieces[0], m);
-    const auto ridge = descent_.ridge_at(best_, m);
-    return ridge && ridge->second > 0.0;
-  });
+  if (best_.count == 1) {
+    return is_one_valley(n, [&](const Vec3& m) { return descent_.bends_up(best_.pieces[0], m); });
+  }
+  return is_one_valley(n,
+                       [&](const Vec3& m) {
+                         const auto ridge = descent_.ridge_at(best_, m);
+                         return ridge && ridge->second > 0.0;
+                       }) &&
+         has_no_own_minimum(best_.pieces[0], n) && has_no_own_minimum(best_.pieces[1], n);
 }
 
-/// A best direction on a ridge is no minimum of its pieces: if one of them does not bend up there, or falls away from there
-/// towards a direction, it may have a minimum of its own in between.
-bool Search::falls_towards_best(const Reach& reach) const {
-  const Vec3 onward = best_.n * best_.n.dot(reach.n) - reach.n;
-  return descent_.bends_up(reach.pieces, best_.n) &&
-         descent_.point(reach.pieces, best_.n).dot(onward) <= kLevelSlope * size_;
+/// A best direction on a ridge is no minimum of its pieces. One of them has none beside it, towards n, if it bends up nowhere
+/// there, or everywhere and falls to the ridge.
+bool Search::has_no_own_minimum(PiecePair pair, const Vec3& n) const {
+  const auto bends_up = [&](const Vec3& m) { return descent_.bends_up(pair, m); };
+  if (is_one_valley(n, [&](const Vec3& m) { return !bends_up(m); })) return true;
+  return is_one_valley(n, bends_up) && falls_towards_best(pair, n);
+}
+
+/// If a piece does not bend up in the best direction, or falls away from there towards n, it may have a minimum of its own in
+/// between.
+bool Search::falls_towards_best(PiecePair pair, const Vec3& n) const {
+  const Vec3 onward = best_.n * best_.n.dot(n) - n;
+  return descent_.bends_up(pair, best_.n) && descent_.point(pair, best_.n).dot(onward) <= kLevelSlope * size_;
 }
 
 void Search::expand() {

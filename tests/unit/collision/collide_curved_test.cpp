@@ -145,6 +145,15 @@ TEST(Curved, SeesTheWayOutBesideARidge) {
   EXPECT_LE(missed_separation(a, b, X_AB), 1e-12);  // 0; was 1.1e-6
 }
 
+// The same 0.25 rad beside a ridge, which a search from next to it had led back to. Found among 100 000 poses.
+TEST(Curved, SeesTheWayOutThatTheRidgeDrawsFrom) {
+  const Quat q(-0.082614045860466848, -0.14083086762575828, -0.15857615982984349, -0.97375314514714706);
+  const Pose X_AB{q, Vec3(0.019876699193935251, -0.1084785611969884, 0.084740078920102477)};
+  const Cylinder cylinder{0.34359725745898828, 0.32226175956161424};
+  const Ellipsoid plate{Vec3(0.0017990265085185866, 0.58126514226920634, 0.36481728406086811)};
+  EXPECT_LE(missed_separation(cylinder, plate, X_AB), 1e-12);  // 0; was 4.8e-3
+}
+
 // Two optima 0.14 to 0.25 rad apart, narrow both, with a wide top between them: thin shapes. Each found among 100 000 poses.
 TEST(Curved, SeesPastTheTopBetweenTwoWaysOut) {
   const Quat q_cone(-0.0046468398632434644, -0.93039787330598223, -0.091069230816827496, 0.35502760375134529);

@@ -244,19 +244,26 @@ Lowest scan_lowest(std::span<const FourVectors> vertices, const Vec3& d) {
   return {lowest.index(), lowest.value()};
 }
 
-Lowest lowest_vertex(const ConvexHull& hull, const Vec3& d) {
-  if (hull.vertices.size() <= kScannedVertices) return scan_lowest(hull.vertex_fours, d);
-  Lowest lowest{0, d.dot(hull.vertices[0])};
+Lowest descend_edges(std::span<const Vec3> vertices, std::span<const std::uint32_t> neighbour_offsets,
+                     std::span<const std::uint32_t> neighbours, const Vec3& d, std::uint32_t start,
+                     double enough) {
+  Lowest lowest{start < vertices.size() ? start : 0, 0.0};
+  lowest.height = d.dot(vertices[lowest.vertex]);
   // A vertex that no neighbour is below is the lowest of all: heights have no second minimum on a convex body.
-  for (bool descending = true; descending;) {
+  for (bool descending = true; descending && lowest.height >= enough;) {
     descending = false;
     const std::uint32_t from = lowest.vertex;
-    for (std::uint32_t k = hull.neighbour_offsets[from]; k < hull.neighbour_offsets[from + 1]; ++k) {
-      const double height = d.dot(hull.vertices[hull.neighbours[k]]);
-      if (height < lowest.height) lowest = {hull.neighbours[k], height}, descending = true;
+    for (std::uint32_t k = neighbour_offsets[from]; k < neighbour_offsets[from + 1]; ++k) {
+      const double height = d.dot(vertices[neighbours[k]]);
+      if (height < lowest.height) lowest = {neighbours[k], height}, descending = true;
     }
   }
   return lowest;
+}
+
+Lowest lowest_vertex(const ConvexHull& hull, const Vec3& d) {
+  if (hull.vertices.size() <= kScannedVertices) return scan_lowest(hull.vertex_fours, d);
+  return descend_edges(hull.vertices, hull.neighbour_offsets, hull.neighbours, d, 0, -kInfinity);
 }
 
 double compute_width(const ConvexHull& hull, const ConvexHull::Face& face) {

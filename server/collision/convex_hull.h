@@ -70,6 +70,11 @@ struct Lowest {
 };
 /// Of at least one.
 Lowest scan_lowest(std::span<const FourVectors> vertices, const Vec3& d);
+/// By descent over edges from vertex `start`, which ends at once below `enough`: the least height is then below it too.
+Lowest descend_edges(std::span<const Vec3> vertices, std::span<const std::uint32_t> neighbour_offsets,
+                     std::span<const std::uint32_t> neighbours, const Vec3& d, std::uint32_t start,
+                     double enough);
+/// By what costs less.
 Lowest lowest_vertex(const ConvexHull& hull, const Vec3& d);
 
 /// Hull of at least 4 points [m] that span a volume. Throws std::invalid_argument naming the cause and the point

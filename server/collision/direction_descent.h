@@ -42,9 +42,6 @@ class DirectionDescent {
       : a_(a), b_(b), size_(a.radius() + b.radius()) {}
 
   Vec3 point(PiecePair pair, const Vec3& n) const { return a_.point(pair.a, n) - b_.point(pair.b, -n); }
-  Curvature curvature(PiecePair pair, const Vec3& n, const Vec3& u, const Vec3& v) const {
-    return a_.curvature(pair.a, n, u, v) + b_.curvature(pair.b, -n, u, v);
-  }
 
   enum class End { nowhere, under_way, arrived };
   /// On the candidate's pieces alone. Under way: at a place where other pieces reach further.
@@ -70,6 +67,9 @@ class DirectionDescent {
   std::optional<Ridge> ridge_at(const CandidateDirection& c, const Vec3& n_near) const;
 
  private:
+  Curvature curvature(PiecePair pair, const Vec3& n, const Vec3& u, const Vec3& v) const {
+    return a_.curvature(pair.a, n, u, v) + b_.curvature(pair.b, -n, u, v);
+  }
   double newton_step(double slope, double second) const;
   bool step_on_surface(CandidateDirection& c) const;
   std::optional<Vec3> onto_ridge(const CandidateDirection& c, const Vec3& n_near) const;

@@ -171,17 +171,7 @@ Polytope view_of(const ConvexHull& hull) {
 
 Lowest descend(const Polytope& polytope, const Vec3& d, std::uint32_t start, double enough) {
   if (polytope.vertices.size() <= kScannedVertices) return scan_lowest(polytope.vertex_fours, d);
-  Lowest lowest{start < polytope.vertices.size() ? start : 0, 0.0};
-  lowest.height = d.dot(polytope.vertices[lowest.vertex]);
-  for (bool descending = true; descending && lowest.height >= enough;) {
-    descending = false;
-    const std::uint32_t from = lowest.vertex;
-    for (std::uint32_t k = polytope.neighbour_offsets[from]; k < polytope.neighbour_offsets[from + 1]; ++k) {
-      const double height = d.dot(polytope.vertices[polytope.neighbours[k]]);
-      if (height < lowest.height) lowest = {polytope.neighbours[k], height}, descending = true;
-    }
-  }
-  return lowest;
+  return descend_edges(polytope.vertices, polytope.neighbour_offsets, polytope.neighbours, d, start, enough);
 }
 
 Lowest lowest_at(const Polytope& polytope, const Vec3& d, std::uint32_t vertex) {

@@ -295,18 +295,18 @@ void Search::expand() {
 
 /// The deepest points.
 void Search::find_points(Separation& result) const {
-  if (!best_.optimal && hull_.empty()) {
-    result.p_A = a_.furthest(best_.n).p_A;
-    result.p_B = b_.furthest(-best_.n).p_A;
-    return;
-  }
-  result.p_A = result.p_B = Vec3::Zero();
   if (best_.optimal) {
     result.exact = true;
     result.p_A = best_.p_A;
     result.p_B = best_.p_B;
     return;
   }
+  if (hull_.empty()) {
+    result.p_A = a_.furthest(best_.n).p_A;
+    result.p_B = b_.furthest(-best_.n).p_A;
+    return;
+  }
+  result.p_A = result.p_B = Vec3::Zero();
   const DifferenceHull::Face face = nearest_ ? *nearest_ : hull_.pierced_by(best_.n);
   for (std::size_t i = 0; i < 3; ++i) {
     const DifferenceHull::Corner& corner = hull_.corner(face.corners[i]);

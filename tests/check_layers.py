@@ -98,12 +98,37 @@ def check_file(root, path):
                 yield number, f"{match.group(0).strip()}: {reason}"
 
 
+def file_local_names(raw):
+    """Yields (line, name) of every type and k... constant in the unnamed namespaces of a file."""
+    for space in re.finditer(r"^namespace \{$.*?^\}  // namespace$", raw, flags=re.DOTALL | re.MULTILINE):
+        for name in re.finditer(r"^(?:struct|class|enum class) (\w+)|^(?:const|static)[^=({\n]* (k[A-Z]\w*)", space.group(0),
+                                flags=re.MULTILINE):
+            yield raw[:space.start() + name.start()].count("\n") + 1, name.group(1) or name.group(2)
+
+
+def check_file_local_names(root, paths):
+    """The compiler reads many files of the physics as one, in batches that shift with every new file: what is local to one
+    must not bear the name of something in another, nor of a type that a header declares."""
+    physics = [path for path in paths if room_of(path) in PHYSICS]
+    text = {path: (root / path).read_text(encoding="utf-8") for path in physics}
+    seen = {}
+    for path in physics:
+        if path.suffix == ".h":
+            for name in re.finditer(r"^(?:struct|class|enum class) (\w+)(?=[ :{][^;]*$)", text[path], flags=re.MULTILINE):
+                seen[name.group(1)] = path
+    for path in physics:
+        if path.suffix == ".cpp":
+            for line, name in file_local_names(text[path]):
+                if seen.setdefault(name, path) != path:
+                    yield f"{path}:{line}: {name} is also in {seen[name]}"
+
+
 def check(root):
     """All problems under the root, as lines."""
     paths = [pathlib.PurePosixPath(file.relative_to(root)) for folder in ("protocol", "server", "clients", "tests")
              for file in sorted((root / folder).rglob("*")) if file.suffix in SOURCES]
-    return [f"{path}:{line}: {problem}" for path in paths
-            for line, problem in check_file(root, path)]
+    found = [f"{path}:{line}: {problem}" for path in paths for line, problem in check_file(root, path)]
+    return found + list(check_file_local_names(root, paths))
 
 
 def self_test():
@@ -133,12 +158,16 @@ def self_test():
         ("server/world/a.cpp", "#include <random>\n", "<random>"),
         ("server/scene/a.cpp", "#include <chrono>\n", "<chrono>"),
         ("server/net/a.cpp", "#ifdef FAST\n#endif\n", "#ifdef"),
+        ("server/math/a.cpp", "namespace {\n\nclass Jacobian {\n};\nconstexpr int kFew = 1;\n\n}  // namespace\n", None),
+        ("server/world/a.cpp", "namespace {\n\nclass Body {};\n\n}  // namespace\n", "a.cpp:3: Body is also in"),
+        ("server/world/a.cpp", "namespace {\n\nconstexpr int kSteps = 1;\n\n}  // namespace\n", "kSteps is also in"),
         ("clients/python/tumble/long.py", "\n" * (MAX_LINES + 1), "the limit is"),
     ]
     for name, text, expected in cases:
         with tempfile.TemporaryDirectory() as folder:
             root = pathlib.Path(folder)
-            files = {"server/math/types.h": "", "server/dynamics/body.h": "", "server/scene/sdf.h": "",
+            files = {"server/math/types.h": "", "server/dynamics/body.h": "struct Body {\n};\n", "server/scene/sdf.h": "",
+                     "server/dynamics/rk4.cpp": "namespace {\nconstexpr int kSteps = 4;\n}  // namespace\n",
                      "server/world/world.h": "", name: text}
             for file, content in files.items():
                 (root / file).parent.mkdir(parents=True, exist_ok=True)

@@ -13,21 +13,41 @@ namespace tumble {
 /// Faces with more vertices are thinned to this many, always with the deepest vertex kept.
 inline constexpr int kMaxFaceVertices = 96;
 
-/// The reference face's plane in A's frame: right-handed unit axes, face normal f outward, a point of the face [m]. The
-/// contact normal n (unit, from the reference to the incident body) need not be f, only near it.
-struct FacePlane {
-  Vec3 origin_A, u_A, v_A, f_A, n_A;
+/// The reference face's plane in A's frame, in right-handed unit axes u, v, f, and how it is seen along a contact normal
+/// (unit, from the reference to the incident body), which need not be f, only near it.
+class FacePlane {
+ public:
+  /// A point of the face [m], the first axis (of any length; zero: any) and the unit outward normal of the face.
+  FacePlane(const Vec3& origin_A, const Vec3& along_A, const Vec3& f_A, const Vec3& n_A)
+      : origin_A_(origin_A),
+        u_A_(direction_or(along_A, perpendicular_to(f_A))),
+        v_A_(f_A.cross(u_A_)),
+        f_A_(f_A),
+        n_A_(n_A),
+        gap_per_height_(1.0 / f_A.dot(n_A)),
+        un_(u_A_.dot(n_A)),
+        vn_(v_A_.dot(n_A)) {}
 
+  const Vec3& n_A() const { return n_A_; }
   /// x, y: where the line through p along n meets the plane; z: the distance to there along n.
-  Vec3 to_plane(const Vec3& p_A) const { return direction_to_plane(p_A - origin_A); }
-  /// The same of the difference of two points.
-  Vec3 direction_to_plane(const Vec3& d_A) const {
-    const double z = f_A.dot(d_A) / f_A.dot(n_A);
-    const Vec3 foot = d_A - z * n_A;
-    return {u_A.dot(foot), v_A.dot(foot), z};
+  Vec3 to_plane(const Vec3& p_A) const {
+    const Vec3 d = p_A - origin_A_;
+    const double z = f_A_.dot(d) * gap_per_height_;
+    return {u_A_.dot(d) - z * un_, v_A_.dot(d) - z * vn_, z};
+  }
+  /// x, y of a point of the plane.
+  Vec3 on_plane(const Vec3& p_A) const {
+    const Vec3 d = p_A - origin_A_;
+    return {u_A_.dot(d), v_A_.dot(d), 0.0};
   }
   /// The middle between such a point and its foot on the plane, in A.
-  Vec3 middle_A(const Vec3& p) const { return origin_A + p.x() * u_A + p.y() * v_A + (0.5 * p.z()) * n_A; }
+  Vec3 middle_A(const Vec3& p) const {
+    return origin_A_ + p.x() * u_A_ + p.y() * v_A_ + (0.5 * p.z()) * n_A_;
+  }
+
+ private:
+  Vec3 origin_A_, u_A_, v_A_, f_A_, n_A_;
+  double gap_per_height_, un_, vn_;
 };
 
 /// One side of the reference face, from vertex `tail` to `head`: inside is nx x + ny y <= offset, (nx, ny) unit.

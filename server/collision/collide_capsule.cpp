@@ -4,6 +4,7 @@
 
 #include <array>
 
+#include "collision/box_polytope.h"
 #include "collision/feature_name.h"
 #include "collision/manifold_builder.h"
 #include "collision/polytope.h"
@@ -37,7 +38,7 @@ class CoreHeights {
 
  private:
   Height compute(std::size_t i) const {
-    const ConvexHull::Face& face = polytope_.faces[i];
+    const Polytope::Face& face = polytope_.faces[i];
     return {face.normal.dot(core_.centre) - face.offset, face.normal.dot(core_.reach)};
   }
   const Polytope& polytope_;
@@ -70,7 +71,7 @@ Meeting find_crossing(const Polytope& polytope, const Segment& core, const CoreH
                       double needed) {
   Meeting best;
   for (std::uint32_t i = 0; i < polytope.edges.size(); ++i) {
-    const ConvexHull::Edge& edge = polytope.edges[i];
+    const Polytope::Edge& edge = polytope.edges[i];
     const CoreHeights::Height left = heights[edge.left_face], right = heights[edge.right_face];
     if (left.rise * right.rise >= 0.0) continue;
     const double limit = std::min(0.0, std::max(needed, best.distance));
@@ -118,7 +119,7 @@ Meeting find_closest(const Polytope& polytope, const Segment& core, const CoreHe
     best = {height, polytope.faces[face].normal, kNoFeature, face};
   }
   for (std::uint32_t i = 0; i < polytope.edges.size(); ++i) {
-    const ConvexHull::Edge& edge = polytope.edges[i];
+    const Polytope::Edge& edge = polytope.edges[i];
     const CoreHeights::Height left = heights[edge.left_face], right = heights[edge.right_face];
     if (std::max(left.low(), right.low()) >= best.distance + tie ||
         std::max(left.high(), right.high()) <= 0.0)
@@ -146,7 +147,7 @@ struct CapsuleQuery {
 /// The part of the core that lies over the face along the normal, as up to two points. Named by the core's end, or by
 /// the edge over which it leaves the face.
 Manifold lie_on_face(const CapsuleQuery& q, std::uint32_t index, const Vec3& normal_P) {
-  const ConvexHull::Face& face = q.polytope.faces[index];
+  const Polytope::Face& face = q.polytope.faces[index];
   const ContactTolerance tolerance = ContactTolerance::of(face.width);
   struct End {
     double s;
@@ -184,7 +185,7 @@ Manifold lie_on_face(const CapsuleQuery& q, std::uint32_t index, const Vec3& nor
 }
 
 Manifold meet_edge(const CapsuleQuery& q, const Meeting& meeting) {
-  const ConvexHull::Edge& edge = q.polytope.edges[meeting.edge];
+  const Polytope::Edge& edge = q.polytope.edges[meeting.edge];
   const Vec3 tail = q.X_AP * q.polytope.vertices[edge.tail], head = q.X_AP * q.polytope.vertices[edge.head];
   const Segment segment{0.5 * (tail + head), 0.5 * (head - tail)};
   const Segment core{q.X_AP * q.core_P.centre, q.X_AP.q * q.core_P.reach};
@@ -266,13 +267,12 @@ Manifold collide_capsule_capsule(const Capsule& a, const Capsule& b, const Pose&
 
 Manifold collide_capsule_box(const Capsule& a, const Box& b, const Pose& X_AB, double margin,
                              PairCache& cache) {
-  const BoxFeatures box(b);
-  return collide_polytope(a, box.view(), X_AB, margin, cache);
+  return collide_polytope(a, BoxPolytope(b), X_AB, margin, cache);
 }
 
 Manifold collide_capsule_hull(const Capsule& a, const HullPointer& b, const Pose& X_AB, double margin,
                               PairCache& cache) {
-  return collide_polytope(a, view_of(*b), X_AB, margin, cache);
+  return collide_polytope(a, *b, X_AB, margin, cache);
 }
 
 }  // namespace tumble

@@ -4,8 +4,10 @@
 
 #include <utility>
 
+#include "collision/box_polytope.h"
 #include "collision/clip.h"
 #include "collision/corner_contact.h"
+#include "collision/corner_on_face.h"
 #include "collision/facet_search.h"
 #include "collision/feature_name.h"
 #include "collision/segment_contact.h"
@@ -46,20 +48,15 @@ class PlacedFace {
 
  private:
   const Polytope& body_;
-  const ConvexHull::Face& face_;
+  const Polytope::Face& face_;
   const std::span<const std::uint32_t> loop_;
   const PolytopePair* pair_;
 };
 
 /// The plane of a face, with the contact's normal away from its body.
 FacePlane plane_of(const PlacedFace& reference, const Vec3& n_A) {
-  FacePlane plane;
-  plane.f_A = reference.normal_A();
-  plane.n_A = n_A;
-  plane.origin_A = reference.vertex_A(0);
-  plane.u_A = direction_or(reference.vertex_A(1) - plane.origin_A, perpendicular_to(plane.f_A));
-  plane.v_A = plane.f_A.cross(plane.u_A);
-  return plane;
+  const Vec3 origin_A = reference.vertex_A(0);
+  return {origin_A, reference.vertex_A(1) - origin_A, reference.normal_A(), n_A};
 }
 
 /// By each side of a face that has a length.
@@ -67,7 +64,7 @@ void cut_by_sides(const PlacedFace& face, const FacePlane& plane, double toleran
   Vec3 tail = Vec3::Zero();
   for (std::size_t k = 0; k < face.count(); ++k) {
     const std::size_t next = k + 1 == face.count() ? 0 : k + 1;
-    const Vec3 d = face.vertex_A(next) - plane.origin_A, head(plane.u_A.dot(d), plane.v_A.dot(d), 0.0);
+    const Vec3 head = plane.on_plane(face.vertex_A(next));
     const double x = head.y() - tail.y(), y = tail.x() - head.x(), length = std::sqrt(x * x + y * y);
     if (length > 0.0) {
       const double nx = x / length, ny = y / length;
@@ -83,7 +80,7 @@ Manifold clip_faces(const PlacedFace& reference, const PlacedFace& incident, boo
   const ContactTolerance tolerance =
       ContactTolerance::of(std::min(reference.width(), incident.width()), face_to_face);
   ClipPolygon polygon(reference_is_a);
-  const std::size_t first = incident.is_thinned() ? incident.lowest_along(plane.n_A) : 0;
+  const std::size_t first = incident.is_thinned() ? incident.lowest_along(plane.n_A()) : 0;
   for (std::size_t k = 0; k < incident.count(); ++k) {
     polygon.add_vertex(plane.to_plane(incident.vertex_A(k, first)), incident.index(k, first));
   }
@@ -94,7 +91,7 @@ Manifold clip_faces(const PlacedFace& reference, const PlacedFace& incident, boo
 
 /// The edges of A and B that cross, in A's frame.
 std::pair<Segment, Segment> crossing_edges(const PolytopePair& pair, const Facet& facet) {
-  const ConvexHull::Edge &edge_a = pair.a.edges[facet.a], &edge_b = pair.b.edges[facet.b];
+  const Polytope::Edge &edge_a = pair.a.edges[facet.a], &edge_b = pair.b.edges[facet.b];
   const Vec3 &tail_a = pair.a.vertices[edge_a.tail], &head_a = pair.a.vertices[edge_a.head];
   const Vec3 tail_b = pair.R_AB * pair.b.vertices[edge_b.tail] + pair.p_AB;
   const Vec3 head_b = pair.R_AB * pair.b.vertices[edge_b.head] + pair.p_AB;
@@ -103,7 +100,7 @@ std::pair<Segment, Segment> crossing_edges(const PolytopePair& pair, const Facet
 }
 
 Manifold cross_edges(const PolytopePair& pair, const Facet& facet, double margin) {
-  const ConvexHull::Edge &edge_a = pair.a.edges[facet.a], &edge_b = pair.b.edges[facet.b];
+  const Polytope::Edge &edge_a = pair.a.edges[facet.a], &edge_b = pair.b.edges[facet.b];
   const auto [a, b] = crossing_edges(pair, facet);
   const double merge = ContactTolerance::of(std::min(a.reach.norm(), b.reach.norm())).merge;
   return make_segment_manifold({a, 0.0}, {b, 0.0}, facet.normal_A, margin, merge,
@@ -165,6 +162,34 @@ void measure_overhang(const PolytopePair& pair, const Facet& facet, const FacePa
                                pair.R_AB.transpose() * (pair.a.vertices[vertex_a] - pair.p_AB));
 }
 
+/// Whether a face and a corner touch, and nothing else of the corner's body comes as near.
+bool stands_alone(const PolytopePair& pair, const Facet& facet, std::uint32_t vertex_a,
+                  std::uint32_t vertex_b, double margin) {
+  const double gap = margin - facet.separation;
+  if (facet.kind == Facet::Kind::face_a) {
+    const Vec3 corner = pair.R_AB * pair.b.vertices[vertex_b] + pair.p_AB;
+    const double slope2 = least_slope2({pair.b, vertex_b, pair.R_AB.transpose() * facet.normal_A}, gap);
+    return slope2 > 0.0 && holds_disc(pair.a, facet.a, corner, gap, slope2);
+  }
+  if (facet.kind == Facet::Kind::face_b) {
+    const Vec3 corner_B = pair.R_AB.transpose() * (pair.a.vertices[vertex_a] - pair.p_AB);
+    const double slope2 = least_slope2({pair.a, vertex_a, -facet.normal_A}, gap);
+    return slope2 > 0.0 && holds_disc(pair.b, facet.b, corner_B, gap, slope2);
+  }
+  return false;
+}
+
+/// What clipping would find then.
+Manifold stand_on_face(const PolytopePair& pair, const Facet& facet, std::uint32_t vertex_a,
+                       std::uint32_t vertex_b, double margin) {
+  const bool on_a = facet.kind == Facet::Kind::face_a;
+  const Vec3 corner =
+      on_a ? Vec3(pair.R_AB * pair.b.vertices[vertex_b] + pair.p_AB) : pair.a.vertices[vertex_a];
+  const double to_middle = (on_a ? -0.5 : 0.5) * facet.separation;
+  return single_point(facet.normal_A, corner + to_middle * facet.normal_A, facet.separation, margin,
+                      name_vertex(!on_a, on_a ? vertex_b : vertex_a));
+}
+
 /// The facet of the last search if its lead (kept by the pipeline) still holds, else a new search.
 FacetAnswer choose_facet(const PolytopePair& pair, double margin, PairCache& cache) {
   if (cache.slack >= 0.0) {
@@ -174,19 +199,13 @@ FacetAnswer choose_facet(const PolytopePair& pair, double margin, PairCache& cac
   return find_facet(pair, margin, cache);
 }
 
-Manifold collide(const PolytopePair& pair, const Shape& a, const Shape& b, const Pose& X_AB, double margin,
-                 PairCache& cache) {
-  const FacetAnswer answer = choose_facet(pair, margin, cache);
-  const double separation = answer.facet.separation;
-  cache.axis_A = answer.facet.normal_A;
-  cache.gap = separation;
-  cache.slack = answer.lead;
-  if (separation > margin) return {};
-  Facet facet = answer.facet;
+/// The contact along a facet's normal, or of the closest points where that is not the whole truth.
+Manifold touch_along(const PolytopePair& pair, Facet facet, const Shape& a, const Shape& b, const Pose& X_AB,
+                     double margin, PairCache& cache) {
   const FacePair faces = find_faces(pair, facet, cache.vertex_A, cache.vertex_B);
   Manifold manifold = make_manifold(pair, facet, faces, margin);
-  AxisContact contact{manifold, separation, pair.a.radius + pair.b.radius, faces.lie_face_to_face()};
-  if (separation > 0.0 && contact.face_to_face)
+  AxisContact contact{manifold, facet.separation, pair.a.radius + pair.b.radius, faces.lie_face_to_face()};
+  if (facet.separation > 0.0 && contact.face_to_face)
     measure_overhang(pair, facet, faces, cache.vertex_A, cache.vertex_B, contact);
   if (touches_along_axis(contact)) return manifold;
   const ClosestContact closest = contact_of_closest_points(contact, a, b, X_AB, margin, cache);
@@ -201,17 +220,32 @@ Manifold collide(const PolytopePair& pair, const Shape& a, const Shape& b, const
   return manifold;
 }
 
-}  // namespace
-
-Manifold collide_box_hull(const Box& a, const HullPointer& b, const Pose& X_AB, double margin,
-                          PairCache& cache) {
-  const BoxFeatures box(a);
-  return collide({box.view(), view_of(*b), rotation_matrix(X_AB.q), X_AB.p}, a, b, X_AB, margin, cache);
+Manifold collide(const PolytopePair& pair, const Shape& a, const Shape& b, const Pose& X_AB, double margin,
+                 PairCache& cache) {
+  const auto [facet, lead] = choose_facet(pair, margin, cache);
+  cache.axis_A = facet.normal_A;
+  cache.gap = facet.separation;
+  cache.slack = lead;
+  if (facet.separation > margin) return {};
+  if (stands_alone(pair, facet, cache.vertex_A, cache.vertex_B, margin))
+    return stand_on_face(pair, facet, cache.vertex_A, cache.vertex_B, margin);
+  return touch_along(pair, facet, a, b, X_AB, margin, cache);
 }
 
-Manifold collide_hull_hull(const HullPointer& a, const HullPointer& b, const Pose& X_AB, double margin,
+const ConvexHull& hull_of(const Shape& shape) {
+  return **std::get_if<HullPointer>(&shape);
+}
+
+}  // namespace
+
+Manifold collide_box_hull(const Shape& a, const Shape& b, const Pose& X_AB, double margin, PairCache& cache) {
+  const BoxPolytope box(*std::get_if<Box>(&a));
+  return collide({box, hull_of(b), rotation_matrix(X_AB.q), X_AB.p}, a, b, X_AB, margin, cache);
+}
+
+Manifold collide_hull_hull(const Shape& a, const Shape& b, const Pose& X_AB, double margin,
                            PairCache& cache) {
-  return collide({view_of(*a), view_of(*b), rotation_matrix(X_AB.q), X_AB.p}, a, b, X_AB, margin, cache);
+  return collide({hull_of(a), hull_of(b), rotation_matrix(X_AB.q), X_AB.p}, a, b, X_AB, margin, cache);
 }
 
 }  // namespace tumble

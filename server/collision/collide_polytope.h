@@ -8,10 +8,9 @@
 
 namespace tumble {
 
-/// The cache gets the axis, the gap when apart, and the winning facet with its lead.
-Manifold collide_box_hull(const Box& a, const HullPointer& b, const Pose& X_AB, double margin,
-                          PairCache& cache);
-Manifold collide_hull_hull(const HullPointer& a, const HullPointer& b, const Pose& X_AB, double margin,
-                           PairCache& cache);
+/// Of a box and a hull, or two hulls; taken as shapes, since they are handed on as such. The cache gets the axis, the gap
+/// when apart, and the winning facet with its lead.
+Manifold collide_box_hull(const Shape& a, const Shape& b, const Pose& X_AB, double margin, PairCache& cache);
+Manifold collide_hull_hull(const Shape& a, const Shape& b, const Pose& X_AB, double margin, PairCache& cache);
 
 }  // namespace tumble

@@ -62,7 +62,7 @@ Manifold collide_sphere_hull(const Sphere& a, const HullPointer& b, const Pose& 
   const Vec3 centre_B = -(X_AB.q.conjugate() * X_AB.p);
   const double reach = a.radius + margin;
   if (centre_B.squaredNorm() > (b->radius + reach) * (b->radius + reach)) return {};
-  const PointDistance nearest = compute_distance(view_of(*b), centre_B, reach);
+  const PointDistance nearest = compute_distance(*b, centre_B, reach);
   return from_centre(a, X_AB.q * -nearest.normal, nearest.distance, margin, nearest.feature);
 }
 

@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "collision/axis_preference.h"
+#include "collision/box_polytope.h"
 #include "collision/clip.h"
 #include "collision/collide_triangle_hull.h"
 #include "collision/feature_name.h"
@@ -209,7 +210,7 @@ class TriangleQuery {
         continue;
       for (std::size_t i = 0; i < count; ++i) {
         for (std::size_t j = 0; j < i; ++j) meet_cone(k, low, others[i].cross(others[j]));
-        for (const ConvexHull::Edge& edge : core_.edges) {
+        for (const Polytope::Edge& edge : core_.edges) {
           meet_cone(k, low, others[i].cross(core_.vertices[edge.head] - core_.vertices[edge.tail]));
         }
       }
@@ -256,8 +257,7 @@ class TriangleQuery {
   }
 
   Manifold lie_on_triangle() const {
-    FacePlane plane{t_.corner[0], t_.along(0).normalized(), {}, t_.normal, t_.normal};
-    plane.v_A = plane.n_A.cross(plane.u_A);
+    const FacePlane plane(t_.corner[0], t_.along(0), t_.normal, t_.normal);
     ClipPolygon polygon(false);
     double width = t_.width();
     if (core_.faces.empty()) {
@@ -265,7 +265,7 @@ class TriangleQuery {
         polygon.add_vertex(plane.to_plane(core_.vertices[i]), i);
       }
     } else {
-      const ConvexHull::Face& face = core_.faces[face_towards(core_, -t_.normal)];
+      const Polytope::Face& face = core_.faces[face_towards(core_, -t_.normal)];
       const auto loop = core_.loop(face);
       const std::size_t count = std::min<std::size_t>(loop.size(), kMaxFaceVertices);
       for (std::size_t k = 0; k < count; ++k) {
@@ -289,11 +289,10 @@ class TriangleQuery {
   }
 
   Manifold lie_on_body() const {
-    const ConvexHull::Face& face = core_.faces[best_.body];
+    const Polytope::Face& face = core_.faces[best_.body];
     const auto loop = core_.loop(face);
-    FacePlane plane{core_.vertices[loop[0]], {}, {}, face.normal, face.normal};
-    plane.u_A = direction_or(core_.vertices[loop[1]] - plane.origin_A, perpendicular_to(plane.n_A));
-    plane.v_A = plane.n_A.cross(plane.u_A);
+    const Vec3& origin = core_.vertices[loop[0]];
+    const FacePlane plane(origin, core_.vertices[loop[1]] - origin, face.normal, face.normal);
     ClipPolygon polygon(true);
     for (std::uint32_t k = 0; k < 3; ++k) {
       polygon.add_vertex(plane.to_plane(t_.corner[k]), t_.vertex[k], 1u << k);
@@ -312,7 +311,7 @@ class TriangleQuery {
   }
 
   Manifold cross_edges() const {
-    const ConvexHull::Edge& edge = core_.edges[best_.body];
+    const Polytope::Edge& edge = core_.edges[best_.body];
     const Vec3 &tail = core_.vertices[edge.tail], &head = core_.vertices[edge.head];
     const Segment a{0.5 * (tail + head), 0.5 * (head - tail)};
     const Segment b{0.5 * (t_.corner[best_.edge] + t_.corner[PlacedTriangle::next(best_.edge)]),
@@ -341,7 +340,7 @@ Manifold collide_triangle(const Shape& a, const TriangleSurface& b, std::uint32_
   static constexpr std::array<std::uint32_t, 3> kPointOffsets = {0, 0, 0};
   static constexpr std::array<std::uint32_t, 3> kSegmentOffsets = {0, 1, 2};
   static constexpr std::array<std::uint32_t, 2> kSegmentNeighbours = {1, 0};
-  static constexpr std::array<ConvexHull::Edge, 1> kSegmentEdges = {{{0, 1, 0, 0}}};
+  static constexpr std::array<Polytope::Edge, 1> kSegmentEdges = {{{0, 1, 0, 0}}};
   const PlacedTriangle triangle(b, part, X_AB);
   const auto query = [&](const Polytope& core, double radius) {
     return TriangleQuery(core, radius, triangle, margin).run();
@@ -366,10 +365,9 @@ Manifold collide_triangle(const Shape& a, const TriangleSurface& b, std::uint32_
                  capsule->radius);
   }
   if (const auto* box = std::get_if<Box>(&a)) {
-    const BoxFeatures features(*box);
-    return query(features.view(), 0.0);
+    return query(BoxPolytope(*box), 0.0);
   }
-  if (const auto* hull = std::get_if<HullPointer>(&a)) return query(view_of(**hull), 0.0);
+  if (const auto* hull = std::get_if<HullPointer>(&a)) return query(**hull, 0.0);
   return is_static_only(a) ? Manifold{} : collide_triangle_hull(a, triangle, margin);
 }
 

@@ -9,6 +9,7 @@
 #include "collision/manifold_builder.h"
 #include "collision/narrow_phase.h"
 #include "collision/segment.h"
+#include "collision/triangle_polytope.h"
 #include "math/rotation.h"
 
 namespace tumble {
@@ -185,10 +186,10 @@ Manifold collide_triangle_hull(const Shape& a, const PlacedTriangle& t, double m
   const double lowest = t.normal.dot(support(a, -t.normal)) - plane;
   const double highest = t.normal.dot(support(a, t.normal)) - plane;
   if (lowest > margin || lowest + highest < 0.0) return {};
-  const TriangleFeatures flat(t.corner, t.normal);
+  const TrianglePolytope flat(t.corner, t.normal);
   const Mat3 identity = Mat3::Identity();
   const Vec3 zero = Vec3::Zero();
-  const Manifold met = collide_pieces({a, identity, zero}, {flat.view(), identity, zero}, -t.normal, margin);
+  const Manifold met = collide_pieces({a, identity, zero}, {flat, identity, zero}, -t.normal, margin);
   if (met.count == 0) return {};
   const Vec3 c = -met.normal_A;
   if (same_direction(c, t.normal)) return lie_on_triangle(a, t, met, margin);

@@ -12,7 +12,6 @@
 #include <tuple>
 
 #include "collision/quickhull.h"
-#include "math/four.h"
 
 namespace tumble {
 namespace {
@@ -209,64 +208,8 @@ void drop_collinear(std::vector<std::vector<std::uint32_t>>& loops, std::size_t 
   }
 }
 
-}  // namespace
-
-void put_in_fours(std::span<const Vec3> vertices, FourVectors* fours) {
-  for (std::size_t i = 0; i < (vertices.size() + 3) / 4 * 4; ++i) {
-    fours[i / 4].set(i % 4, vertices[i < vertices.size() ? i : 0]);
-  }
-}
-
-void put_in_fours(std::span<const ConvexHull::Face> faces, ConvexHull::FourFaces* fours) {
-  for (std::size_t i = 0; i < (faces.size() + 3) / 4 * 4; ++i) {
-    const ConvexHull::Face& face = faces[i < faces.size() ? i : 0];
-    fours[i / 4].normal.set(i % 4, face.normal);
-    fours[i / 4].offset[i % 4] = face.offset;
-  }
-}
-
-void add_fours(ConvexHull& hull) {
-  hull.vertex_fours.resize((hull.vertices.size() + 3) / 4);
-  hull.face_fours.resize((hull.faces.size() + 3) / 4);
-  put_in_fours(hull.vertices, hull.vertex_fours.data());
-  put_in_fours(hull.faces, hull.face_fours.data());
-}
-
-double bounding_radius(std::span<const Vec3> points) {
-  double radius = 0.0;
-  for (const Vec3& p : points) radius = std::max(radius, p.norm());
-  return radius;
-}
-
-Lowest scan_lowest(std::span<const FourVectors> vertices, const Vec3& d) {
-  FirstLowest lowest;
-  for (const FourVectors& v : vertices) lowest.look_at(dot(v, d));
-  return {lowest.index(), lowest.value()};
-}
-
-Lowest descend_edges(std::span<const Vec3> vertices, std::span<const std::uint32_t> neighbour_offsets,
-                     std::span<const std::uint32_t> neighbours, const Vec3& d, std::uint32_t start,
-                     double enough) {
-  Lowest lowest{start < vertices.size() ? start : 0, 0.0};
-  lowest.height = d.dot(vertices[lowest.vertex]);
-  // A vertex that no neighbour is below is the lowest of all: heights have no second minimum on a convex body.
-  for (bool descending = true; descending && lowest.height >= enough;) {
-    descending = false;
-    const std::uint32_t from = lowest.vertex;
-    for (std::uint32_t k = neighbour_offsets[from]; k < neighbour_offsets[from + 1]; ++k) {
-      const double height = d.dot(vertices[neighbours[k]]);
-      if (height < lowest.height) lowest = {neighbours[k], height}, descending = true;
-    }
-  }
-  return lowest;
-}
-
-Lowest lowest_vertex(const ConvexHull& hull, const Vec3& d) {
-  if (hull.vertices.size() <= kScannedVertices) return scan_lowest(hull.vertex_fours, d);
-  return descend_edges(hull.vertices, hull.neighbour_offsets, hull.neighbours, d, 0, -kInfinity);
-}
-
-double compute_width(const ConvexHull& hull, const ConvexHull::Face& face) {
+/// Of a face, the inradius of regular shapes [m].
+double compute_width(const ConvexHull::Parts& hull, const ConvexHull::Face& face) {
   double perimeter = 0.0, area2 = 0.0;
   const Vec3& origin = hull.vertices[hull.loops[face.first]];
   for (std::uint32_t i = 0; i < face.count; ++i) {
@@ -278,7 +221,27 @@ double compute_width(const ConvexHull& hull, const ConvexHull::Face& face) {
   return perimeter > 0.0 ? area2 / perimeter : 0.0;
 }
 
-void add_topology(ConvexHull& hull) {
+}  // namespace
+
+ConvexHull::ConvexHull(Parts parts)
+    : parts_(std::move(parts)),
+      own_vertex_fours_((parts_.vertices.size() + 3) / 4),
+      own_face_fours_((parts_.faces.size() + 3) / 4) {
+  put_in_fours(parts_.vertices, own_vertex_fours_.data());
+  put_in_fours(parts_.faces, own_face_fours_.data());
+  static_cast<Polytope&>(*this) = {
+      parts_.vertices,          parts_.loops,      parts_.faces,        parts_.edges,
+      parts_.neighbour_offsets, parts_.neighbours, parts_.edges_around, own_vertex_fours_,
+      own_face_fours_,          parts_.centre,     parts_.radius};
+}
+
+double bounding_radius(std::span<const Vec3> points) {
+  double radius = 0.0;
+  for (const Vec3& p : points) radius = std::max(radius, p.norm());
+  return radius;
+}
+
+void add_topology(ConvexHull::Parts& hull) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> left_of;
   for (std::uint32_t f = 0; f < hull.faces.size(); ++f) {
     const ConvexHull::Face& face = hull.faces[f];
@@ -303,7 +266,6 @@ void add_topology(ConvexHull& hull) {
     hull.centre += vertex / static_cast<double>(hull.vertices.size());
   }
   hull.radius = bounding_radius(hull.vertices);
-  add_fours(hull);
 }
 
 ConvexHull build_convex_hull(const std::vector<Vec3>& points) {
@@ -318,7 +280,7 @@ ConvexHull build_convex_hull(const std::vector<Vec3>& points) {
   auto loops = FaceMerger(distinct, triangles, grid.extent).merge();
   drop_collinear(loops, distinct.size());
 
-  ConvexHull hull;
+  ConvexHull::Parts hull;
   std::vector<std::uint32_t> vertex_of(distinct.size(), kNone);
   for (const auto& loop : loops) {
     for (const std::uint32_t p : loop) vertex_of[p] = 0;
@@ -337,7 +299,7 @@ ConvexHull build_convex_hull(const std::vector<Vec3>& points) {
     for (const std::uint32_t p : loop) hull.loops.push_back(vertex_of[p]);
   }
   add_topology(hull);
-  return hull;
+  return ConvexHull(std::move(hull));
 }
 
 }  // namespace tumble

@@ -41,9 +41,7 @@ struct PieceOf {
     return (std::signbit(d.x()) ? 0u : 1u) | (std::signbit(d.y()) ? 0u : 2u) |
            (std::signbit(d.z()) ? 0u : 4u);
   }
-  std::uint32_t operator()(const HullPointer& h) const {
-    return lowest_vertex(*h, -d).vertex;
-  }
+  std::uint32_t operator()(const HullPointer& h) const { return descend(*h, -d, 0, -kInfinity).vertex; }
 };
 
 struct PointOf {
@@ -113,8 +111,7 @@ struct FaceTowards {
     return Vec3(std::copysign(1.0, d[axis]) * Vec3::Unit(axis));
   }
   std::optional<Vec3> operator()(const HullPointer& h) const {
-    const Polytope view = view_of(*h);
-    return view.faces[tumble::face_towards(view, d)].normal;
+    return h->faces[tumble::face_towards(*h, d)].normal;
   }
   std::optional<Vec3> operator()(const Cylinder&) const { return Vec3(0, 0, std::copysign(1.0, d.z())); }
   std::optional<Vec3> operator()(const Cone&) const {
@@ -132,7 +129,7 @@ struct DepthOf {
   double operator()(const Box& b) const { return (b.half_extents - p.cwiseAbs()).minCoeff(); }
   double operator()(const HullPointer& h) const {
     double depth = kInfinity;
-    for (const ConvexHull::Face& face : h->faces) depth = std::min(depth, face.offset - face.normal.dot(p));
+    for (const Polytope::Face& face : h->faces) depth = std::min(depth, face.offset - face.normal.dot(p));
     return depth;
   }
   double operator()(const Cylinder& c) const { return -nearest_surface(c, p).distance; }
@@ -146,7 +143,7 @@ ConvexPieces::ConvexPieces(const Shape& shape, const Mat3& R_AS, const Vec3& p_A
     : shape_(&shape), R_(R_AS), p_(p_AS), rounding_(std::visit(Rounding(), shape)) {}
 
 ConvexPieces::ConvexPieces(const Polytope& polytope, const Mat3& R_AS, const Vec3& p_AS)
-    : polytope_(polytope), R_(R_AS), p_(p_AS), rounding_(0.0) {}
+    : polytope_(&polytope), R_(R_AS), p_(p_AS), rounding_(0.0) {}
 
 ConvexPieces::Point ConvexPieces::furthest(const Vec3& n_A) const {
   const Vec3 d = R_.transpose() * n_A;

@@ -24,7 +24,7 @@ inline constexpr std::uint32_t kLowPiece = 0, kHighPiece = 1;
 
 class ConvexPieces {
  public:
-  /// Not for half-spaces and surfaces. Keeps a reference to the shape.
+  /// Not for half-spaces and surfaces. Keeps a reference to the shape or polytope.
   ConvexPieces(const Shape& shape, const Mat3& R_AS, const Vec3& p_AS);
   /// Something with flat faces that is no shape of its own, as a triangle.
   ConvexPieces(const Polytope& polytope, const Mat3& R_AS, const Vec3& p_AS);
@@ -55,11 +55,11 @@ class ConvexPieces {
   double radius() const { return shape_ ? bounding_radius(*shape_) : polytope_->radius; }
   /// One of the two: null if it is the other.
   const Shape* shape() const { return shape_; }
-  const Polytope* polytope() const { return polytope_ ? &*polytope_ : nullptr; }
+  const Polytope* polytope() const { return polytope_; }
 
  private:
   const Shape* shape_ = nullptr;
-  std::optional<Polytope> polytope_;
+  const Polytope* polytope_ = nullptr;
   Mat3 R_;
   Vec3 p_;
   double rounding_;

@@ -13,7 +13,7 @@ namespace {
 constexpr double kFlatCurvature = 1e-13;
 /// ... and an optimum may bend down by this much along a level direction.
 constexpr double kBendsDown = 1e-9;
-constexpr int kNewtonSteps = 20;
+constexpr int kDescentSteps = 20;
 /// Three points seen along a direction span no triangle if it is this share of what their distances allow.
 constexpr double kNoArea = 1e-9;
 constexpr double kLongestStep = 0.3, kLeap = 0.2;  // [rad]
@@ -128,7 +128,7 @@ bool DirectionDescent::is_furthest(const CandidateDirection& candidate) const {
 /// Stops where a leap has come to other pieces: their ridge or corner may be the optimum, and that of the candidate's own
 /// pieces lie far behind it.
 DirectionDescent::End DirectionDescent::converge(CandidateDirection& candidate) const {
-  for (int i = 0; i < kNewtonSteps; ++i) {
+  for (int i = 0; i < kDescentSteps; ++i) {
     const Vec3 before = candidate.n;
     const bool good = candidate.count == 1   ? step_on_surface(candidate)
                       : candidate.count == 2 ? step_on_ridge(candidate)

@@ -88,7 +88,7 @@ class EdgesThatMayWin {
       for (std::size_t k = 0; k < 4; ++k) points_[4 * i + k] = static_cast<std::uint8_t>(points[k]);
     }
   }
-  bool contains(const ConvexHull::Edge& edge) const {
+  bool contains(const Polytope::Edge& edge) const {
     return (points_above(edge.left_face) | points_above(edge.right_face)) == 3;
   }
 
@@ -107,7 +107,7 @@ class EdgesThatMayWin {
 /// Where two bodies touch in a facet of their difference: a point of each; how far the facet reaches about the point of
 /// it that is above the origin [m], < 0 if that lies beside it, or nothing is certain; and until when it stays a facet
 /// (as FacetAnswer::lead).
-struct Touch {
+struct FacetTouch {
   Vec3 p_a, p_b;
   double clearance, lead;
 };
@@ -158,11 +158,11 @@ class FacetSearch {
   bool overlaps_more(const EdgeArc& arc, bool of_a, double depth);
   std::size_t gather(bool of_a, std::uint32_t& next, ArcBlock& block) const;
   std::size_t thin_out(bool of_a, ArcBlock& block, std::size_t count);
-  Touch touch_of_face(const Facet& facet) const;
-  Touch touch_of_edges(const Facet& facet) const;
-  double lead_by_disc(const Facet& facet, const Touch& touch) const;
+  FacetTouch touch_of_face(const Facet& facet) const;
+  FacetTouch touch_of_edges(const Facet& facet) const;
+  double lead_by_disc(const Facet& facet, const FacetTouch& touch) const;
   double lead_by_ball(const Facet& facet) const;
-  void be_not_along(const Vec3& face_normal, const Facet& facet, Touch& touch) const;
+  void be_not_along(const Vec3& face_normal, const Facet& facet, FacetTouch& touch) const;
 
   void offer(const Facet& facet);
   double needed() const { return std::max(floor_, best_.separation) - 4.0 * tie_; }
@@ -185,7 +185,7 @@ void FacetSearch::offer(const Facet& facet) {
 
 /// Below `enough` the separation may be any number not below the true one.
 Facet FacetSearch::face_a(std::uint32_t i, double enough) {
-  const ConvexHull::Face& face = a_.polytope.faces[i];
+  const Polytope::Face& face = a_.polytope.faces[i];
   const double base = face.normal.dot(p_) - face.offset;
   const Lowest lowest = lowest_of(b_.polytope, R_.transpose() * face.normal, cache_.vertex_B, enough - base);
   cache_.vertex_B = lowest.vertex;
@@ -193,7 +193,7 @@ Facet FacetSearch::face_a(std::uint32_t i, double enough) {
 }
 
 Facet FacetSearch::face_b(std::uint32_t i, double enough) {
-  const ConvexHull::Face& face = b_.polytope.faces[i];
+  const Polytope::Face& face = b_.polytope.faces[i];
   const Vec3 normal = R_ * face.normal;
   const double base = -normal.dot(p_) - face.offset;
   const Lowest lowest = lowest_of(a_.polytope, normal, cache_.vertex_A, enough - base);
@@ -221,7 +221,7 @@ double FacetSearch::separation_along(const Vec3& n) {
 
 EdgeArc FacetSearch::arc_of_a(std::uint32_t i) const {
   const Polytope& a = a_.polytope;
-  const ConvexHull::Edge& edge = a.edges[i];
+  const Polytope::Edge& edge = a.edges[i];
   const Vec3& tail = a.vertices[edge.tail];
   return {tail, a.vertices[edge.head] - tail, a.faces[edge.left_face].normal, a.faces[edge.right_face].normal,
           i};
@@ -229,7 +229,7 @@ EdgeArc FacetSearch::arc_of_a(std::uint32_t i) const {
 
 EdgeArc FacetSearch::arc_of_b(std::uint32_t i) const {
   const Polytope& b = b_.polytope;
-  const ConvexHull::Edge& edge = b.edges[i];
+  const Polytope::Edge& edge = b.edges[i];
   const Vec3& tail = b.vertices[edge.tail];
   return {R_ * tail + p_, R_ * (b.vertices[edge.head] - tail), -(R_ * b.faces[edge.left_face].normal),
           -(R_ * b.faces[edge.right_face].normal), i};
@@ -355,15 +355,16 @@ void FacetSearch::search_edges(double margin) {
   }
 }
 
-Touch FacetSearch::touch_of_face(const Facet& facet) const {
+FacetTouch FacetSearch::touch_of_face(const Facet& facet) const {
   const bool of_a = facet.kind == Facet::Kind::face_a;
   const Polytope& polytope = of_a ? a_.polytope : b_.polytope;
   const Vec3 corner = of_a ? corner_of_b() : corner_of_a();
   const Vec3 point = of_a ? corner : in_b(corner);
   const Vec3 foot = corner + (of_a ? -facet.separation : facet.separation) * facet.normal_A;
-  Touch touch = of_a ? Touch{foot, corner, kInfinity, kInfinity} : Touch{corner, foot, kInfinity, kInfinity};
+  FacetTouch touch =
+      of_a ? FacetTouch{foot, corner, kInfinity, kInfinity} : FacetTouch{corner, foot, kInfinity, kInfinity};
 
-  const ConvexHull::Face& face = polytope.faces[of_a ? facet.a : facet.b];
+  const Polytope::Face& face = polytope.faces[of_a ? facet.a : facet.b];
   const auto loop = polytope.loop(face);
   for (std::size_t i = 0; i < loop.size(); ++i) {
     const Vec3& tail = polytope.vertices[loop[i]];
@@ -382,7 +383,7 @@ Touch FacetSearch::touch_of_face(const Facet& facet) const {
   return touch;
 }
 
-Touch FacetSearch::touch_of_edges(const Facet& facet) const {
+FacetTouch FacetSearch::touch_of_edges(const Facet& facet) const {
   const EdgeArc a = arc_of_a(facet.a), b = arc_of_b(facet.b);
   const SegmentPair pair =
       closest_points({a.tail + 0.5 * a.along, 0.5 * a.along}, {b.tail + 0.5 * b.along, 0.5 * b.along});
@@ -395,13 +396,13 @@ Touch FacetSearch::touch_of_edges(const Facet& facet) const {
   // The arcs cross until an end of one has turned into the other's plane.
   const double turn_b = std::min(std::abs(b.left.dot(a.along)), std::abs(b.right.dot(a.along))) / length_a;
   const double turn_a = std::min(std::abs(a.left.dot(b.along)), std::abs(a.right.dot(b.along))) / length_b;
-  Touch touch{pair.p_A, pair.p_B, clearance, std::min(turn_a, turn_b) * b_.polytope.radius};
+  FacetTouch touch{pair.p_A, pair.p_B, clearance, std::min(turn_a, turn_b) * b_.polytope.radius};
   for (const Vec3& normal : {a.left, a.right, b.left, b.right}) be_not_along(normal, facet, touch);
   return touch;
 }
 
 /// A face that comes before the facet in order must not lie along it, or else it could be equal.
-void FacetSearch::be_not_along(const Vec3& face_normal, const Facet& facet, Touch& touch) const {
+void FacetSearch::be_not_along(const Vec3& face_normal, const Facet& facet, FacetTouch& touch) const {
   const double sine = face_normal.cross(facet.normal_A).norm();
   touch.lead = std::min(touch.lead, sine * b_.polytope.radius);
   if (sine * touch.clearance <= 4.0 * tie_) touch.clearance = -1.0;
@@ -411,7 +412,7 @@ void FacetSearch::be_not_along(const Vec3& face_normal, const Facet& facet, Touc
 /// angle x to the facet's normal A - B reaches d cos x + c sin x at least, which is more than d up to x = 2 atan(c / d):
 /// if c > 2 d, up to 126 degrees. For all others there must be some point of A - B deep enough on the other side. Apart,
 /// c > 0 says that the distance itself is along the normal.
-double FacetSearch::lead_by_disc(const Facet& facet, const Touch& touch) const {
+double FacetSearch::lead_by_disc(const Facet& facet, const FacetTouch& touch) const {
   const double d = std::max(0.0, -facet.separation);
   const double disc = touch.clearance - 2.0 * d - kLeastDisc * b_.polytope.radius;
   if (disc < 0.0 || d == 0.0) return disc;
@@ -437,7 +438,7 @@ double FacetSearch::lead_by_ball(const Facet& facet) const {
 /// For a facet that is proven to win: how much may move until something else does (as FacetAnswer::lead), else < 0.
 double FacetSearch::prove(const Facet& facet) const {
   if (facet.separation < needed()) return -1.0;
-  const Touch touch = facet.kind == Facet::Kind::edges ? touch_of_edges(facet) : touch_of_face(facet);
+  const FacetTouch touch = facet.kind == Facet::Kind::edges ? touch_of_edges(facet) : touch_of_face(facet);
   if (touch.clearance < 0.0) return -1.0;
   const double lead = std::max(lead_by_disc(facet, touch), lead_by_ball(facet));
   return lead < 0.0 ? -1.0 : std::min(lead, touch.lead);

@@ -8,7 +8,7 @@
 namespace tumble {
 
 struct PolytopePair {
-  Polytope a, b;
+  const Polytope &a, &b;
   Mat3 R_AB;
   Vec3 p_AB;
 };

@@ -58,6 +58,7 @@ template <auto function>
 constexpr PairFunction by = pair_function<function>(function);
 
 constexpr PairFunction none;
+constexpr PairFunction box_hull{.exact = collide_box_hull}, hull_hull{.exact = collide_hull_hull};
 constexpr PairFunction curved{.exact = collide_curved, .gjk_first = true};
 constexpr PairFunction on_ground{.closed_form = collide_half_space_curved};
 
@@ -68,8 +69,8 @@ constexpr std::array<std::array<PairFunction, kShapeTypes>, kShapeTypes> kMatrix
   /*half-space*/ {none,     by<collide_half_space_sphere>,  by<collide_half_space_capsule>,  by<collide_half_space_box>,  by<collide_half_space_hull>,  on_ground,                    on_ground,                on_ground},
   /*sphere    */ {none,     by<collide_sphere_sphere>,      by<collide_sphere_capsule>,      by<collide_sphere_box>,      by<collide_sphere_hull>,      by<collide_sphere_cylinder>,  by<collide_sphere_cone>,  by<collide_sphere_ellipsoid>},
   /*capsule   */ {none,     none,                           by<collide_capsule_capsule>,     by<collide_capsule_box>,     by<collide_capsule_hull>,     curved,                       curved,                   curved},
-  /*box       */ {none,     none,                           none,                            by<collide_box_box>,         by<collide_box_hull>,         curved,                       curved,                   curved},
-  /*hull      */ {none,     none,                           none,                            none,                        by<collide_hull_hull>,        curved,                       curved,                   curved},
+  /*box       */ {none,     none,                           none,                            by<collide_box_box>,         box_hull,                     curved,                       curved,                   curved},
+  /*hull      */ {none,     none,                           none,                            none,                        hull_hull,                    curved,                       curved,                   curved},
   /*cylinder  */ {none,     none,                           none,                            none,                        none,                         curved,                       curved,                   curved},
   /*cone      */ {none,     none,                           none,                            none,                        none,                         none,                         curved,                   curved},
   /*ellipsoid */ {none,     none,                           none,                            none,                        none,                         none,                         none,                     curved},

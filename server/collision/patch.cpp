@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "collision/box_polytope.h"
 #include "collision/feature_name.h"
 #include "collision/manifold_builder.h"
 #include "collision/segment.h"
@@ -65,7 +66,7 @@ struct PatchOf {
   }
   Patch of_polytope(const Polytope& polytope) const {
     const std::uint32_t face_index = face_towards(polytope, d);
-    const ConvexHull::Face& face = polytope.faces[face_index];
+    const Polytope::Face& face = polytope.faces[face_index];
     if (face.normal.dot(d) >= kAhead) {
       Patch patch;
       patch.kind = Patch::Kind::polygon;
@@ -82,8 +83,8 @@ struct PatchOf {
     }
     const std::uint32_t vertex = descend(polytope, -d, 0, -kInfinity).vertex;
     double least = kAside;
-    const ConvexHull::Edge* across = nullptr;
-    for (const ConvexHull::Edge& edge : polytope.edges) {
+    const Polytope::Edge* across = nullptr;
+    for (const Polytope::Edge& edge : polytope.edges) {
       if (edge.tail != vertex && edge.head != vertex) continue;
       const Vec3 along = polytope.vertices[edge.head] - polytope.vertices[edge.tail];
       const double slope = std::abs(along.dot(d)) / along.norm();
@@ -123,8 +124,8 @@ struct PatchOf {
     if (std::abs(side.dot(d)) < kAside) return along(rim, apex, 0);
     return side.dot(d) > 0.0 ? at_point(apex, 1) : at_point(rim, 0);
   }
-  Patch operator()(const Box& b) const { return of_polytope(BoxFeatures(b).view()); }
-  Patch operator()(const HullPointer& h) const { return of_polytope(view_of(*h)); }
+  Patch operator()(const Box& b) const { return of_polytope(BoxPolytope(b)); }
+  Patch operator()(const HullPointer& h) const { return of_polytope(*h); }
 };
 
 /// Collects pairs of points, one of each body, that lie behind each other along n.
@@ -217,10 +218,10 @@ void visit_rim_crossings(const Patch& a, const Patch& b, const Vec3& n, Visit&& 
 
 /// Lines that run side by side (within 1e-3 rad): the ends of their common part.
 void meet_lines(const Patch& a, const Patch& b, FeatureMeeting& meeting) {
-  constexpr double kSideBySide = 1e-6;  // sin^2
+  constexpr double kParallelSides = 1e-6;  // sin^2
   const Vec3 along_a = a.corners[1] - a.corners[0], along_b = b.corners[1] - b.corners[0];
   const double aa = along_a.squaredNorm(), ab = along_a.dot(along_b);
-  if (along_a.cross(along_b).squaredNorm() > kSideBySide * aa * along_b.squaredNorm()) return;
+  if (along_a.cross(along_b).squaredNorm() > kParallelSides * aa * along_b.squaredNorm()) return;
   const double from = along_a.dot(b.corners[0] - a.corners[0]) / aa, rise = ab / aa;
   const double low = std::max(0.0, std::min(from, from + rise)),
                high = std::min(1.0, std::max(from, from + rise));

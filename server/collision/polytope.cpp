@@ -8,58 +8,6 @@
 namespace tumble {
 namespace {
 
-// Corner i lies on the positive side of axis k if bit k is set.
-constexpr std::array<std::uint32_t, 24> kBoxLoops = {1, 3, 7, 5, 0, 4, 6, 2, 2, 6, 7, 3,
-                                                     0, 1, 5, 4, 4, 5, 7, 6, 0, 2, 3, 1};
-constexpr std::array<std::uint32_t, 9> kBoxNeighbourOffsets = {0, 3, 6, 9, 12, 15, 18, 21, 24};
-
-constexpr std::array<std::uint32_t, 24> box_neighbours() {
-  std::array<std::uint32_t, 24> neighbours{};
-  for (std::uint32_t i = 0; i < 24; ++i) neighbours[i] = (i / 3) ^ (1u << i % 3);
-  return neighbours;
-}
-
-/// The face whose loop runs from one corner to the other.
-constexpr std::uint32_t box_face_left_of(std::uint32_t tail, std::uint32_t head) {
-  std::uint32_t i = 0;
-  while (kBoxLoops[i] != tail || kBoxLoops[i % 4 == 3 ? i - 3 : i + 1] != head) ++i;
-  return i / 4;
-}
-
-constexpr std::array<ConvexHull::Edge, 12> box_edges() {
-  std::array<ConvexHull::Edge, 12> edges{};
-  std::size_t n = 0;
-  for (std::uint32_t i = 0; i < 24; ++i) {
-    const std::uint32_t tail = kBoxLoops[i], head = kBoxLoops[i % 4 == 3 ? i - 3 : i + 1];
-    if (tail < head) edges[n++] = {tail, head, i / 4, box_face_left_of(head, tail)};
-  }
-  return edges;
-}
-
-/// The edge from corner i / 3 across axis i % 3.
-constexpr std::array<std::uint32_t, 24> box_edges_around() {
-  std::array<std::uint32_t, 24> around{};
-  const auto edges = box_edges();
-  for (std::uint32_t i = 0; i < 24; ++i) {
-    const std::uint32_t corner = i / 3, other = corner ^ (1u << i % 3);
-    while (edges[around[i]].tail != std::min(corner, other) ||
-           edges[around[i]].head != std::max(corner, other)) {
-      ++around[i];
-    }
-  }
-  return around;
-}
-
-constexpr std::array<std::uint32_t, 24> kBoxNeighbours = box_neighbours(),
-                                        kBoxEdgesAround = box_edges_around();
-constexpr std::array<ConvexHull::Edge, 12> kBoxEdges = box_edges();
-
-constexpr std::array<std::uint32_t, 6> kTriangleLoops = {0, 1, 2, 0, 2, 1};
-constexpr std::array<ConvexHull::Edge, 3> kTriangleEdges = {{{0, 1, 0, 1}, {1, 2, 0, 1}, {0, 2, 1, 0}}};
-constexpr std::array<std::uint32_t, 4> kTriangleNeighbourOffsets = {0, 2, 4, 6};
-constexpr std::array<std::uint32_t, 6> kTriangleNeighbours = {1, 2, 0, 2, 0, 1},
-                                       kTriangleEdgesAround = {0, 2, 0, 1, 2, 1};
-
 /// Share of the sizes below which two distances are equal.
 constexpr double kDistanceTie = 1e-15;
 
@@ -96,7 +44,7 @@ class NearestPlace {
 /// p is beyond.
 void offer_face(const Polytope& polytope, std::uint32_t index, const Vec3& p, double height,
                 NearestPlace& nearest) {
-  const ConvexHull::Face& face = polytope.faces[index];
+  const Polytope::Face& face = polytope.faces[index];
   const auto loop = polytope.loop(face);
   bool inside = true;
   for (std::size_t i = 0; i < loop.size(); ++i) {
@@ -115,63 +63,48 @@ void offer_face(const Polytope& polytope, std::uint32_t index, const Vec3& p, do
   if (inside) nearest.offer({height, face.normal, p - height * face.normal, mix_features(0, index)});
 }
 
+/// From vertex `start`, of many.
+Lowest descend_edges(const Polytope& polytope, const Vec3& d, std::uint32_t start, double enough) {
+  const std::span<const Vec3> vertices = polytope.vertices;
+  Lowest lowest{start < vertices.size() ? start : 0, 0.0};
+  lowest.height = d.dot(vertices[lowest.vertex]);
+  // A vertex that no neighbour is below is the lowest of all: heights have no second minimum on a convex body.
+  for (bool descending = true; descending && lowest.height >= enough;) {
+    descending = false;
+    const std::uint32_t from = lowest.vertex;
+    for (std::uint32_t k = polytope.neighbour_offsets[from]; k < polytope.neighbour_offsets[from + 1]; ++k) {
+      const double height = d.dot(vertices[polytope.neighbours[k]]);
+      if (height < lowest.height) lowest = {polytope.neighbours[k], height}, descending = true;
+    }
+  }
+  return lowest;
+}
+
 }  // namespace
 
-BoxFeatures::BoxFeatures(const Box& box) : radius_(box.half_extents.norm()) {
-  const Vec3& h = box.half_extents;
-  for (std::uint32_t i = 0; i < 8; ++i) {
-    for (int k = 0; k < 3; ++k) vertices_[i][k] = i >> k & 1 ? h[k] : -h[k];
+void put_in_fours(std::span<const Vec3> vertices, FourVectors* fours) {
+  for (std::size_t i = 0; i < (vertices.size() + 3) / 4 * 4; ++i) {
+    fours[i / 4].set(i % 4, vertices[i < vertices.size() ? i : 0]);
   }
-  for (std::uint32_t i = 0; i < 6; ++i) {
-    const int axis = static_cast<int>(i / 2);
-    const double h1 = h[(axis + 1) % 3], h2 = h[(axis + 2) % 3];
-    faces_[i] = {i % 2 ? Vec3(-Vec3::Unit(axis)) : Vec3::Unit(axis), h[axis], 4 * i, 4,
-                 2.0 * h1 * h2 / (h1 + h2)};
+}
+
+void put_in_fours(std::span<const Polytope::Face> faces, Polytope::FourFaces* fours) {
+  for (std::size_t i = 0; i < (faces.size() + 3) / 4 * 4; ++i) {
+    const Polytope::Face& face = faces[i < faces.size() ? i : 0];
+    fours[i / 4].normal.set(i % 4, face.normal);
+    fours[i / 4].offset[i % 4] = face.offset;
   }
-  put_in_fours(vertices_, vertex_fours_.data());
-  put_in_fours(faces_, face_fours_.data());
 }
 
-Polytope BoxFeatures::view() const {
-  return {vertices_,      kBoxLoops,       faces_,        kBoxEdges,   kBoxNeighbourOffsets,
-          kBoxNeighbours, kBoxEdgesAround, vertex_fours_, face_fours_, Vec3::Zero(),
-          radius_};
-}
-
-TriangleFeatures::TriangleFeatures(const std::array<Vec3, 3>& corners, const Vec3& normal)
-    : vertices_(corners), centre_((corners[0] + corners[1] + corners[2]) / 3.0) {
-  const Vec3 u = corners[1] - corners[0], v = corners[2] - corners[0];
-  const double width = u.cross(v).norm() / (u.norm() + v.norm() + (v - u).norm());
-  const double offset = normal.dot(corners[0]);
-  faces_ = {{{normal, offset, 0, 3, width}, {-normal, -offset, 3, 3, width}}};
-  for (const Vec3& corner : corners) radius_ = std::max(radius_, corner.norm());
-  put_in_fours(vertices_, &vertex_four_);
-  put_in_fours(faces_, &face_four_);
-}
-
-Polytope TriangleFeatures::view() const {
-  return {vertices_,
-          kTriangleLoops,
-          faces_,
-          kTriangleEdges,
-          kTriangleNeighbourOffsets,
-          kTriangleNeighbours,
-          kTriangleEdgesAround,
-          {&vertex_four_, 1},
-          {&face_four_, 1},
-          centre_,
-          radius_};
-}
-
-Polytope view_of(const ConvexHull& hull) {
-  return {hull.vertices,          hull.loops,      hull.faces,        hull.edges,
-          hull.neighbour_offsets, hull.neighbours, hull.edges_around, hull.vertex_fours,
-          hull.face_fours,        hull.centre,     hull.radius};
+Lowest scan_lowest(std::span<const FourVectors> vertices, const Vec3& d) {
+  FirstLowest lowest;
+  for (const FourVectors& v : vertices) lowest.look_at(dot(v, d));
+  return {lowest.index(), lowest.value()};
 }
 
 Lowest descend(const Polytope& polytope, const Vec3& d, std::uint32_t start, double enough) {
   if (polytope.vertices.size() <= kScannedVertices) return scan_lowest(polytope.vertex_fours, d);
-  return descend_edges(polytope.vertices, polytope.neighbour_offsets, polytope.neighbours, d, start, enough);
+  return descend_edges(polytope, d, start, enough);
 }
 
 Lowest lowest_at(const Polytope& polytope, const Vec3& d, std::uint32_t vertex) {
@@ -195,7 +128,7 @@ std::uint32_t face_towards(const Polytope& polytope, const Vec3& d, std::uint32_
   return best;
 }
 
-std::uint32_t flatter_face(const Polytope& polytope, const ConvexHull::Edge& edge, const Vec3& d) {
+std::uint32_t flatter_face(const Polytope& polytope, const Polytope::Edge& edge, const Vec3& d) {
   const auto along = [&](std::uint32_t face) { return polytope.faces[face].normal.dot(d); };
   return along(edge.left_face) >= along(edge.right_face) ? edge.left_face : edge.right_face;
 }

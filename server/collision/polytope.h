@@ -1,27 +1,47 @@
-// One view of everything with flat faces (boxes, hulls), so that exact feature searches are written once; and the
-// signed distance of a point from it. Lengths in [m], in the polytope's own frame.
+// One view of everything with flat faces (boxes, hulls, triangles), so that exact feature searches are written once; and
+// the signed distance of a point from it. Lengths in [m], in the polytope's own frame.
 #pragma once
 
-#include <array>
+#include <cstdint>
 #include <span>
 
-#include "collision/convex_hull.h"
-#include "collision/shape.h"
+#include "math/four.h"
+#include "math/types.h"
 
 namespace tumble {
 
+/// Merged planar faces, unique edges. Whoever has a body of this kind owns what it views.
 struct Polytope {
+  struct Face {
+    Vec3 normal;                 ///< Outward unit normal.
+    double offset;               ///< normal . x = offset on the face [m].
+    std::uint32_t first, count;  ///< Slice of `loops`: the face's vertices, counter-clockwise from outside.
+    double width = 0.0;          ///< Across where it is narrow: twice its area over its perimeter [m].
+  };
+  struct Edge {
+    std::uint32_t tail, head;             ///< Vertex indices.
+    std::uint32_t left_face, right_face;  ///< Faces on either side; the loop of left_face runs tail -> head.
+  };
+  /// Planes of four faces.
+  struct FourFaces {
+    FourVectors normal;
+    Four offset;
+  };
+
   std::span<const Vec3> vertices{};
   std::span<const std::uint32_t> loops{};
-  std::span<const ConvexHull::Face> faces{};
-  std::span<const ConvexHull::Edge> edges{};
-  std::span<const std::uint32_t> neighbour_offsets{}, neighbours{}, edges_around{};
+  std::span<const Face> faces{};
+  std::span<const Edge> edges{};
+  std::span<const std::uint32_t> neighbour_offsets{};  ///< Size vertices + 1: slice of `neighbours` of each.
+  std::span<const std::uint32_t> neighbours{};         ///< Vertices joined by an edge, for hill climbing.
+  std::span<const std::uint32_t> edges_around{};       ///< The edge to each of `neighbours`.
+  /// The vertices and faces once more, lane by lane; after the last one the first again.
   std::span<const FourVectors> vertex_fours{};
-  std::span<const ConvexHull::FourFaces> face_fours{};
+  std::span<const FourFaces> face_fours{};
   Vec3 centre = Vec3::Zero();  ///< Well inside.
-  double radius = 0.0;
+  double radius = 0.0;         ///< Largest |vertex| [m].
 
-  std::span<const std::uint32_t> loop(const ConvexHull::Face& face) const {
+  std::span<const std::uint32_t> loop(const Face& face) const {
     return loops.subspan(face.first, face.count);
   }
   std::span<const std::uint32_t> edges_around_vertex(std::uint32_t vertex) const {
@@ -30,43 +50,23 @@ struct Polytope {
   }
 };
 
-/// Corners and face planes of a box; face 2i looks along +axis i, face 2i + 1 along -axis i.
-class BoxFeatures {
- public:
-  explicit BoxFeatures(const Box& box);
-  BoxFeatures(const BoxFeatures&) = delete;  // views point into this object
-  BoxFeatures& operator=(const BoxFeatures&) = delete;
-  Polytope view() const;
+/// Fills in the fours; there must be room for (count + 3) / 4 of them.
+void put_in_fours(std::span<const Vec3> vertices, FourVectors* fours);
+void put_in_fours(std::span<const Polytope::Face> faces, Polytope::FourFaces* fours);
 
- private:
-  double radius_;
-  std::array<Vec3, 8> vertices_;
-  std::array<ConvexHull::Face, 6> faces_;
-  std::array<FourVectors, 2> vertex_fours_;
-  std::array<ConvexHull::FourFaces, 2> face_fours_;
+/// Looking at every vertex costs no more than going from neighbour to neighbour, up to here (measured: nothing gained at
+/// 32 vertices, 2-4 times at 200).
+inline constexpr std::size_t kScannedVertices = 64;
+
+/// The vertex with the least height along d, the first of equals.
+struct Lowest {
+  std::uint32_t vertex;
+  double height;
 };
-
-/// A triangle (corners counter-clockwise about its unit normal) as a body without thickness: face 0 looks along the normal.
-class TriangleFeatures {
- public:
-  TriangleFeatures(const std::array<Vec3, 3>& corners, const Vec3& normal);
-  TriangleFeatures(const TriangleFeatures&) = delete;  // views point into this object
-  TriangleFeatures& operator=(const TriangleFeatures&) = delete;
-  Polytope view() const;
-
- private:
-  std::array<Vec3, 3> vertices_;
-  std::array<ConvexHull::Face, 2> faces_;
-  FourVectors vertex_four_;
-  ConvexHull::FourFaces face_four_;
-  Vec3 centre_;
-  double radius_ = 0.0;
-};
-
-Polytope view_of(const ConvexHull& hull);
-
-/// Vertex with the least height along d, by descent over edges from vertex `start`. Stops at once below `enough`: the
-/// true least height is then below it too.
+/// Of at least one.
+Lowest scan_lowest(std::span<const FourVectors> vertices, const Vec3& d);
+/// By a scan or, of many vertices, by descent over edges from vertex `start`. Stops at once below `enough`: the true least
+/// height is then below it too.
 Lowest descend(const Polytope& polytope, const Vec3& d, std::uint32_t start, double enough);
 /// What that says, to the bit, if this vertex is the lowest.
 Lowest lowest_at(const Polytope& polytope, const Vec3& d, std::uint32_t vertex);
@@ -78,7 +78,7 @@ std::uint32_t face_towards(const Polytope& polytope, const Vec3& d);
 std::uint32_t face_towards(const Polytope& polytope, const Vec3& d, std::uint32_t vertex);
 
 /// Of the two faces of an edge, the one that looks along d more.
-std::uint32_t flatter_face(const Polytope& polytope, const ConvexHull::Edge& edge, const Vec3& d);
+std::uint32_t flatter_face(const Polytope& polytope, const Polytope::Edge& edge, const Vec3& d);
 
 /// A direction (of any length > 0) in the middle of those along which the edge `along` (tail to head) between two faces is
 /// furthest out: their sum, and what lies between them if they look opposite ways, as on a flat body.

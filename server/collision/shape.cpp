@@ -167,7 +167,7 @@ struct SupportPoint {
     return {std::copysign(b.half_extents.x(), d.x()), std::copysign(b.half_extents.y(), d.y()),
             std::copysign(b.half_extents.z(), d.z())};
   }
-  Vec3 operator()(const HullPointer& h) const { return h->vertices[lowest_vertex(*h, -d).vertex]; }
+  Vec3 operator()(const HullPointer& h) const { return h->vertices[descend(*h, -d, 0, -kInfinity).vertex]; }
   Vec3 operator()(const Cylinder& c) const {
     return rim_point(d, c.radius, std::copysign(c.half_length, d.z()));
   }
@@ -212,7 +212,8 @@ Vec3 support(const Shape& shape, const Vec3& d_S) {
 
 double extent_along(const Shape& shape, const Vec3& d_S) {
   if (const auto* box = std::get_if<Box>(&shape)) return box->half_extents.dot(d_S.cwiseAbs());
-  if (const auto* hull = std::get_if<HullPointer>(&shape)) return -lowest_vertex(**hull, -d_S).height;
+  if (const auto* hull = std::get_if<HullPointer>(&shape))
+    return -descend(**hull, -d_S, 0, -kInfinity).height;
   return d_S.dot(support(shape, d_S));
 }
 

@@ -12,7 +12,7 @@ namespace tumble {
 namespace {
 
 /// Far more than is ever needed: at a grazing touch, the worst, every step halves the gap.
-constexpr int kSteps = 200;
+constexpr int kCastSteps = 200;
 
 /// B: a shape, or the corners of a triangle.
 template <typename B>
@@ -59,7 +59,7 @@ std::optional<ShapeCastHit> advance_to_touch(const Shape& a, const B& b, const P
   const double ahead = 4.0 * rounding_of(a, b, X_AB);
   ShapeCastHit hit;
   DistanceSettings settings;
-  while (hit.iterations < kSteps) {
+  while (hit.iterations < kCastSteps) {
     const Pose X_now{X_AB.q, X_AB.p - hit.fraction * way_A};
     const Distance distance = compute_distance(a, b, X_now, settings);
     ++hit.iterations;

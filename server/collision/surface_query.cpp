@@ -18,9 +18,10 @@ ShapeCastHit touched_at_start(const Shape& a, const SurfaceTriangle& triangle, c
                               const Distance& start) {
   const Vec3 normal_A = rotation_matrix(X_AB.q) * triangle.normal;
   const double height = normal_A.dot(support(a, -normal_A) - X_AB * triangle.corner[0]);
-  constexpr double kTouching = 1e-13;  // of the sizes: a touch, and rounding
+  constexpr double kTouchingSurface = 1e-13;  // of the sizes: a touch, and rounding
   const double size = bounding_radius(a) + triangle.corner[0].norm() + X_AB.p.norm();
-  return {.inside = height < -kTouching * size, .normal_A = normal_A, .p_A = start.b_A, .iterations = 1};
+  return {
+      .inside = height < -kTouchingSurface * size, .normal_A = normal_A, .p_A = start.b_A, .iterations = 1};
 }
 
 }  // namespace

@@ -16,8 +16,8 @@ namespace {
 /// own; and noise of 1e-16 R of the speeds. The first is right for nearly all; a step that does not help is followed by the
 /// next, once towards less noise, once towards heavier loads.
 constexpr double kRigidities[] = {1e6, 1e4, 1e8};
-constexpr int kHalvings = 8;
-constexpr int kMaxStalls = 3;
+constexpr int kLineHalvings = 8;
+constexpr int kMostStalls = 3;
 
 struct Law {
   Coupling joins;
@@ -246,7 +246,7 @@ double AlmNewton::defect(double step) const {
 double AlmNewton::choose_step() const {
   const double before = defect(0.0);
   double best = 1.0, least = kInfinity, step = 1.0;
-  for (int i = 0; i <= kHalvings; ++i, step *= 0.5) {
+  for (int i = 0; i <= kLineHalvings; ++i, step *= 0.5) {
     const double after = defect(step);
     if (after < (1.0 - 0.1 * step) * before) return step;
     if (after < least) {
@@ -278,7 +278,7 @@ void AlmNewton::store(double step) {
 int AlmNewton::solve(int max_iterations) {
   double least = best_.residual();
   int iterations = 0, stalls = 0;
-  while (iterations < max_iterations && stalls < kMaxStalls) {
+  while (iterations < max_iterations && stalls < kMostStalls) {
     load();
     const bool solved = find_changes();
     ++iterations;

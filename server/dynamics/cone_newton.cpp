@@ -14,12 +14,12 @@ namespace {
 /// times more after each problem that Newton's method solved quickly.
 constexpr double kSoftest = 1e2, kStiffest = 1e6;
 constexpr int kQuick = 4;
-constexpr int kMostSteps = 8;  // of one problem
+constexpr int kNewtonSteps = 8;  // of one problem
 constexpr int kMostCompromiseSteps = 30;
 constexpr int kMostHalvings = 8;
 constexpr double kSolved = 1e-11;  // [m/s] mean defect of a problem
 
-struct Cone {
+struct FrictionCone {
   Coupling joins;
   enum class Kind { contact, half_line, line, spring } kind;
   double bound, friction, stiffness;
@@ -58,7 +58,7 @@ class ConeNewton {
  private:
   void add_contact(PointContact& c);
   void add_row(ScalarRow& row);
-  Vec3 impulse(const Cone& cone, const Vec3& u, Mat3* G) const;
+  Vec3 impulse(const FrictionCone& cone, const Vec3& u, Mat3* G) const;
   double update_defect(const std::vector<Vec6>& v, bool linearize);
   bool step();
   int solve_problem(int max_iterations);
@@ -67,7 +67,7 @@ class ConeNewton {
   VelocitySystem& system_;
   const double tolerance_;
   BestImpulses& best_;
-  std::vector<Cone> cones_;
+  std::vector<FrictionCone> cones_;
   std::vector<Vec6> free_, v_, defect_, dv_, trial_;  // by position
   double mass_ = 0.0;                                 // [kg] of all bodies
   double rigidity_ = kSoftest;
@@ -91,22 +91,22 @@ ConeNewton::ConeNewton(ContactProblem& problem, VelocitySystem& system, double t
 }
 
 void ConeNewton::add_contact(PointContact& c) {
-  Cone& cone = cones_.emplace_back();
+  FrictionCone& cone = cones_.emplace_back();
   cone.joins = system_.make_coupling(c);
-  cone.kind = c.friction > kFrictionless ? Cone::Kind::contact : Cone::Kind::half_line;
+  cone.kind = c.friction > kFrictionless ? FrictionCone::Kind::contact : FrictionCone::Kind::half_line;
   cone.bound = c.bound;
   cone.friction = c.friction;
   cone.stiffness = c.mass_n;
   cone.contact = &c.lambda;
-  cone.l = cone.kind == Cone::Kind::contact ? c.lambda : Vec3(c.lambda.x(), 0.0, 0.0);
+  cone.l = cone.kind == FrictionCone::Kind::contact ? c.lambda : Vec3(c.lambda.x(), 0.0, 0.0);
 }
 
 void ConeNewton::add_row(ScalarRow& row) {
-  Cone& cone = cones_.emplace_back();
+  FrictionCone& cone = cones_.emplace_back();
   cone.joins = system_.make_coupling(row);
-  cone.kind = row.is_soft()        ? Cone::Kind::spring
-              : row.is_two_sided() ? Cone::Kind::line
-                                   : Cone::Kind::half_line;
+  cone.kind = row.is_soft()        ? FrictionCone::Kind::spring
+              : row.is_two_sided() ? FrictionCone::Kind::line
+                                   : FrictionCone::Kind::half_line;
   cone.bound = row.is_soft() ? -row.bias : row.bound;
   cone.friction = 0.0;
   cone.stiffness = row.is_soft() ? row.softness : row.mass;
@@ -115,16 +115,16 @@ void ConeNewton::add_row(ScalarRow& row) {
 }
 
 /// p(u), and G = - dp/du.
-Vec3 ConeNewton::impulse(const Cone& cone, const Vec3& u, Mat3* G) const {
+Vec3 ConeNewton::impulse(const FrictionCone& cone, const Vec3& u, Mat3* G) const {
   if (G) G->setZero();
-  if (cone.kind == Cone::Kind::spring) {
+  if (cone.kind == FrictionCone::Kind::spring) {
     if (G) (*G)(0, 0) = cone.stiffness;
     return {-cone.stiffness * (u.x() - cone.bound), 0.0, 0.0};
   }
   const double k = rigidity_ * cone.stiffness;
-  if (cone.kind != Cone::Kind::contact) {
+  if (cone.kind != FrictionCone::Kind::contact) {
     const double y = cone.l.x() - k * (u.x() - cone.bound);
-    if (cone.kind == Cone::Kind::half_line && !(y > 0.0)) return Vec3::Zero();
+    if (cone.kind == FrictionCone::Kind::half_line && !(y > 0.0)) return Vec3::Zero();
     if (G) (*G)(0, 0) = k;
     return {y, 0.0, 0.0};
   }
@@ -143,7 +143,7 @@ Vec3 ConeNewton::impulse(const Cone& cone, const Vec3& u, Mat3* G) const {
 /// defect = -F(v); returns F . M^-1 F, twice the energy that it would give [J].
 double ConeNewton::update_defect(const std::vector<Vec6>& v, bool linearize) {
   for (std::size_t i = 0; i < v.size(); ++i) defect_[i] = -system_.momentum(i, v[i] - free_[i]);
-  for (Cone& cone : cones_) {
+  for (FrictionCone& cone : cones_) {
     const Vec3 u = system_.velocity(cone.joins, v) + cone.joins.offset;
     const Vec3 p = impulse(cone, u, linearize ? &cone.G : nullptr);
     if (linearize) cone.p = p;
@@ -158,7 +158,7 @@ double ConeNewton::update_defect(const std::vector<Vec6>& v, bool linearize) {
 bool ConeNewton::step() {
   const double before = update_defect(v_, true);
   system_.set_mass();
-  for (const Cone& cone : cones_) {
+  for (const FrictionCone& cone : cones_) {
     if (!cone.G.isZero(0.0)) system_.add_stiffness(cone.joins, cone.G);
   }
   if (!system_.factorize()) return false;
@@ -186,7 +186,7 @@ int ConeNewton::solve_problem(int max_iterations) {
 
 void ConeNewton::store() {
   update_defect(v_, true);
-  for (Cone& cone : cones_) {
+  for (FrictionCone& cone : cones_) {
     cone.l = cone.p;
     if (cone.contact) {
       *cone.contact = cone.p;
@@ -199,7 +199,7 @@ void ConeNewton::store() {
 int ConeNewton::solve(int max_iterations) {
   int iterations = 0;
   while (iterations < max_iterations) {
-    const int steps = solve_problem(std::min(kMostSteps, max_iterations - iterations));
+    const int steps = solve_problem(std::min(kNewtonSteps, max_iterations - iterations));
     iterations += steps;
     store();
     const double residual = best_.offer();

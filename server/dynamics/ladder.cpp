@@ -16,7 +16,7 @@ namespace {
 constexpr double kMargin = 0.1;
 constexpr std::size_t kFewContacts = 8;
 /// Of the speeds, and of 1 m/s: residuals below which no rung gets reliably; a single body's sweeps get to the last digit.
-constexpr double kRounding = 1e-11, kRoundingOfSmall = 1e-15;
+constexpr double kLadderRounding = 1e-11, kRoundingOfSmall = 1e-15;
 
 double largest_impulse(const ContactProblem& problem) {
   double largest = 0.0;
@@ -46,7 +46,7 @@ Ladder::Ladder(ContactProblem& problem, const SolverSettings& settings)
     const Vec3 u = relative_velocity(problem.bodies[c.a], problem.bodies[c.b], c.rA, c.rB);
     speed_ = std::max(speed_, std::sqrt(u.squaredNorm()));
   }
-  rounding_ = (is_small() ? kRoundingOfSmall : kRounding) * (1.0 + speed_);
+  rounding_ = (is_small() ? kRoundingOfSmall : kLadderRounding) * (1.0 + speed_);
   wanted_ = kMargin * std::max(settings.tolerance, rounding_);
 }
 

@@ -80,7 +80,7 @@ Inertia hull_inertia(const ConvexHull& hull, double density) {
   double volume = 0.0;
   Vec3 first = Vec3::Zero();
   Mat3 second = Mat3::Zero();
-  for (const ConvexHull::Face& face : hull.faces) {
+  for (const Polytope::Face& face : hull.faces) {
     const std::uint32_t* loop = &hull.loops[face.first];
     const Vec3 v1 = hull.vertices[loop[0]] - apex;
     for (std::uint32_t i = 2; i < face.count; ++i) {

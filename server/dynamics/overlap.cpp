@@ -14,7 +14,7 @@ namespace tumble {
 namespace {
 
 /// [m] what is less is no overlap, and that many last digits of a coordinate.
-constexpr double kTolerance = 1e-10, kDigits = 16.0 * 0x1p-52;
+constexpr double kOverlapTolerance = 1e-10, kDigits = 16.0 * 0x1p-52;
 /// Stiffness over the mass that a contact moves, and over that of the whole island, which it may have to lift: the inverse
 /// of the share of a gap that is left.
 constexpr double kRigidity = 1e6, kLifting = 1e3;
@@ -65,7 +65,7 @@ double largest_coordinate(const ContactProblem& problem) {
 }
 
 double tolerance_of(const ContactProblem& problem) {
-  return kTolerance + kDigits * largest_coordinate(problem);
+  return kOverlapTolerance + kDigits * largest_coordinate(problem);
 }
 
 /// [m] at the end of the step, by the velocities.

@@ -239,17 +239,17 @@ class Pass {
 
   /// Newton's methods end in a few steps, hardly ever not; then the interior point method is next.
   void compress_with_friction() {
-    constexpr int kNewtonSteps = 20, kConeSteps = 10, kSweeps = 100;
+    constexpr int kReflectionSteps = 20, kConeSteps = 10, kSweeps = 100;
     double speed = 0.0;
     for (const Vec3& u : u_before_) speed = std::max(speed, std::sqrt(u.squaredNorm()));
     const double wanted = 0.1 * kAtRestWithFriction * speed;
     ContactProblem part = make_part();
     BestImpulses best(part);
     VelocitySystem system(part, VelocitySystem::find_pattern(part));
-    run_alm_newton(part, system, wanted, kNewtonSteps, best);
+    run_alm_newton(part, system, wanted, kReflectionSteps, best);
     if (best.residual() > wanted) run_cone_newton(part, system, wanted, kConeSteps, best);
     if (best.residual() > wanted) run_interior_point(part, system, wanted, best);
-    if (best.residual() > wanted) run_alm_newton(part, system, wanted, kNewtonSteps, best);
+    if (best.residual() > wanted) run_alm_newton(part, system, wanted, kReflectionSteps, best);
     best.restore();
     if (best.residual() > wanted) {
       SolverSettings settings;

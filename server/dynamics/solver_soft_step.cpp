@@ -14,9 +14,9 @@ namespace tumble {
 namespace {
 
 constexpr double kMostSoftSubSteps =
-    400.0;                          // the longest step allowed, 0.1 s, by the sub-step of the exact level
-constexpr double kRounding = 1e-9;  // of a step that is meant to be a whole number of sub-steps
-constexpr double kPushSpeed = 3.0;  // [m/s] as BoundSettings::push_speed by default
+    400.0;  // the longest step allowed, 0.1 s, by the sub-step of the exact level
+constexpr double kSweepRounding = 1e-9;  // of a step that is meant to be a whole number of sub-steps
+constexpr double kPushSpeed = 3.0;       // [m/s] as BoundSettings::push_speed by default
 
 /// A damped spring of the contact's own mass, discretised implicitly.
 struct Softness {
@@ -306,7 +306,7 @@ void SoftStep::solve() {
 }  // namespace
 
 SolverReport solve_soft_step(ContactProblem& problem, const SolverSettings& settings) {
-  const double shortest = std::ceil(problem.h / settings.longest_sub_step - kRounding);
+  const double shortest = std::ceil(problem.h / settings.longest_sub_step - kSweepRounding);
   const int sub_steps = std::max(settings.sub_steps, static_cast<int>(std::min(shortest, kMostSoftSubSteps)));
   SoftStep(problem, sub_steps).solve();
   SolverReport report;

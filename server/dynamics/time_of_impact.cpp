@@ -159,9 +159,9 @@ struct Look {
   bool closing = false;  // touching: a point of contact approaches
 };
 
-class Search {
+class Pursuit {
  public:
-  Search(const MovingShape& a, const MovingShape& b, const ImpactSearch& search)
+  Pursuit(const MovingShape& a, const MovingShape& b, const ImpactSearch& search)
       : a_(a), b_(b), ways_{&a.way, &b.way}, shapes_{&a.shape, &b.shape}, part_(search.part), to_(search.to) {
     size_ = extent(a.shape) + extent(b.shape);
     if (const TriangleSurface* surface = surface_of(a.shape))
@@ -298,7 +298,7 @@ std::optional<TimeOfImpact> find_impact(const MovingShape& a, const MovingShape&
       return as_impact(search.from, spheres_touch(d, u, ball->radius + other->radius, span));
     }
   }
-  return Search(a, b, search).run(search.from);
+  return Pursuit(a, b, search).run(search.from);
 }
 
 double time_above(double gap, double w, double a) {

@@ -57,8 +57,8 @@ bool gains_energy(const ContactProblem& problem, const std::vector<SolverBody>& 
     work += 0.5 * p.dot(u0 + u1);
     size += std::abs(p.dot(u0)) + std::abs(p.dot(u1));
   }
-  constexpr double kRounding = 1e-12;
-  return work > kRounding * size;
+  constexpr double kImpactRounding = 1e-12;
+  return work > kImpactRounding * size;
 }
 
 bool is_loaded(const Contact& contact) {

@@ -13,7 +13,7 @@ namespace {
 /// [rad] of the swing, or turn, in a part: as many parts as keep to it, and again if it turned out to be twice as much. A
 /// pass of joint_step.cpp leaves a quarter of the square of it; with a radian chains at 60 Hz gain energy (tests/stability).
 constexpr double kPhase = 0.5, kMostPhase = 1.0;
-constexpr double kRounding = 1e-9;  // of a rest that is meant to be a whole number of parts
+constexpr double kTautRounding = 1e-9;  // of a rest that is meant to be a whole number of parts
 
 /// k tr(I^-1 (r.n - r n^T)): what a pull of n at r adds to the sum of the squares of the swings [1/s^2].
 double swing_square(const SolverBody& body, const Vec3& r, const Vec3& n) {
@@ -76,12 +76,12 @@ void World::advance_taut(std::size_t island, const StepContext& step) {
   double wanted = step.h * kPhase / swing_phase();
   while (rest.h > 0.0) {
     StepContext part = rest;
-    const double parts = std::ceil(rest.h / std::max(wanted, shortest) - kRounding);
+    const double parts = std::ceil(rest.h / std::max(wanted, shortest) - kTautRounding);
     part.h = rest.h / std::max(1.0, parts);
     solve_taut_part(island, part);
     const double phase = swing_phase();
     wanted = part.h * kPhase / phase;
-    if (phase > kMostPhase && part.h > (1.0 + kRounding) * shortest) continue;
+    if (phase > kMostPhase && part.h > (1.0 + kTautRounding) * shortest) continue;
     if (try_rest(scratch_.residual)) return;
     ++counters_.taut_parts;
     note_opening();

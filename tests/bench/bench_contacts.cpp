@@ -137,7 +137,7 @@ Pair hull_apart(Source& source) {
 /// A vertex of B lies in the middle of a face of A, 0.1 mm deep.
 Pair hull_rest(Source& source) {
   static const HullPointer hull = hull32(source);
-  const ConvexHull::Face& face = hull->faces[static_cast<std::size_t>(source.uniform(0.0, 20.0))];
+  const Polytope::Face& face = hull->faces[static_cast<std::size_t>(source.uniform(0.0, 20.0))];
   Vec3 middle = Vec3::Zero();
   for (std::uint32_t k = 0; k < face.count; ++k)
     middle += hull->vertices[hull->loops[face.first + k]] / face.count;

@@ -74,7 +74,7 @@ double unevenness(const Shape& shape) {
   const HullPointer* hull = std::get_if<HullPointer>(&shape);
   double worst = 0.0;
   if (hull == nullptr) return worst;
-  for (const ConvexHull::Face& face : (*hull)->faces) {
+  for (const Polytope::Face& face : (*hull)->faces) {
     for (std::uint32_t i = face.first; i < face.first + face.count; ++i) {
       worst = std::max(worst, face.offset - face.normal.dot((*hull)->vertices[(*hull)->loops[i]]));
     }
@@ -94,12 +94,11 @@ Shape scaled(const Shape& shape, double s) {
   if (const auto* ellipsoid = std::get_if<Ellipsoid>(&shape)) return Ellipsoid{s * ellipsoid->half_axes};
   const auto* pointer = std::get_if<HullPointer>(&shape);
   if (pointer == nullptr) return shape;
-  ConvexHull hull = **pointer;
+  ConvexHull::Parts hull = (*pointer)->parts();
   for (Vec3& vertex : hull.vertices) vertex *= s;
-  for (ConvexHull::Face& face : hull.faces) face.offset *= s, face.width *= s;
+  for (Polytope::Face& face : hull.faces) face.offset *= s, face.width *= s;
   hull.centre *= s;
   hull.radius *= s;
-  add_fours(hull);
   return std::make_shared<const ConvexHull>(std::move(hull));
 }
 

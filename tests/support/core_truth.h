@@ -10,6 +10,7 @@
 #include <limits>
 #include <vector>
 
+#include "collision/box_polytope.h"
 #include "collision/polytope.h"
 #include "math/pose.h"
 
@@ -55,9 +56,9 @@ struct Core {
       core.vertices = {place(Vec3(0, 0, -capsule->half_length)), place(Vec3(0, 0, capsule->half_length))};
       core.edges = {{core.vertices[0], core.vertices[1]}};
     } else if (const auto* box = std::get_if<Box>(&shape)) {
-      core.add(BoxFeatures(*box).view(), place);
+      core.add(BoxPolytope(*box), place);
     } else {
-      core.add(view_of(**std::get_if<HullPointer>(&shape)), place);
+      core.add(**std::get_if<HullPointer>(&shape), place);
     }
     return core;
   }
@@ -74,7 +75,7 @@ struct Core {
   template <typename Place>
   void add(const Polytope& polytope, const Place& place) {
     for (const Vec3& v : polytope.vertices) vertices.push_back(place(v));
-    for (const ConvexHull::Face& face : polytope.faces) {
+    for (const Polytope::Face& face : polytope.faces) {
       Face placed;
       for (const std::uint32_t v : polytope.loop(face)) placed.loop.push_back(vertices[v]);
       Vec3L sum = Vec3L::Zero();
@@ -85,7 +86,7 @@ struct Core {
       placed.normal = sum.normalized();
       faces.push_back(placed);
     }
-    for (const ConvexHull::Edge& e : polytope.edges) {
+    for (const Polytope::Edge& e : polytope.edges) {
       edges.push_back({vertices[e.tail], vertices[e.head], static_cast<int>(e.left_face),
                        static_cast<int>(e.right_face)});
     }

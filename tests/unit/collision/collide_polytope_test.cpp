@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "collision/narrow_phase.h"
+#include "collision/triangle_polytope.h"
 #include "first_query.h"
 #include "sample_hulls.h"
 #include "support/core_truth.h"
@@ -12,9 +13,8 @@ namespace tumble::test {
 namespace {
 
 HullPointer flat_triangle(const std::array<Vec3, 3>& corners, const Vec3& normal) {
-  const TriangleFeatures features(corners, normal);
-  const Polytope flat = features.view();
-  ConvexHull hull;
+  const TrianglePolytope flat(corners, normal);
+  ConvexHull::Parts hull;
   hull.vertices.assign(flat.vertices.begin(), flat.vertices.end());
   hull.loops.assign(flat.loops.begin(), flat.loops.end());
   hull.faces.assign(flat.faces.begin(), flat.faces.end());
@@ -24,7 +24,6 @@ HullPointer flat_triangle(const std::array<Vec3, 3>& corners, const Vec3& normal
   hull.edges_around.assign(flat.edges_around.begin(), flat.edges_around.end());
   hull.centre = flat.centre;
   hull.radius = flat.radius;
-  add_fours(hull);
   return std::make_shared<const ConvexHull>(std::move(hull));
 }
 
@@ -61,7 +60,7 @@ TEST(HullHull, MemoryOfThePastChangesNothing) {
     const bool resting = i % 2 == 0;
     Pose X_AB{random.rotation(), 0.9 * random.direction()};
     if (resting) {  // a vertex of B in the middle of a face of A
-      const ConvexHull::Face& face = a->faces[static_cast<std::size_t>(i)];
+      const Polytope::Face& face = a->faces[static_cast<std::size_t>(i)];
       Vec3 middle = Vec3::Zero();
       for (std::uint32_t k = 0; k < face.count; ++k)
         middle += a->vertices[a->loops[face.first + k]] / face.count;

@@ -110,13 +110,13 @@ TEST(CollideTriangle, ABoxOfTrianglesTouchesLikeTheBox) {
 /// A hull's surface; faces of many corners as fans.
 TriangleMeshPointer mesh_of(const ConvexHull& hull) {
   std::vector<TriangleMesh::Corners> triangles;
-  for (const ConvexHull::Face& face : hull.faces) {
+  for (const Polytope::Face& face : hull.faces) {
     for (std::uint32_t k = 1; k + 1 < face.count; ++k) {
       const std::uint32_t* const loop = hull.loops.data() + face.first;
       triangles.push_back({loop[0], loop[k], loop[k + 1]});
     }
   }
-  return std::make_shared<const TriangleMesh>(hull.vertices, triangles);
+  return std::make_shared<const TriangleMesh>(hull.parts().vertices, triangles);
 }
 
 // Ridges of any bend, peaks of any shape: what is deepest is as deep as in the solid that they bound, along its normal.
@@ -126,7 +126,7 @@ TEST(CollideTriangle, RandomRidgesTouchLikeTheHullThatTheyBound) {
     int cases = 0, wrong = 0;
     for (int i = 0; i < 400; ++i) {
       const HullPointer solid = random_hull(random, 8 + i % 8, Vec3(1.0, 0.8, 0.9));
-      const auto is_deep = [](const ConvexHull::Face& face) { return face.offset > 0.1; };
+      const auto is_deep = [](const Polytope::Face& face) { return face.offset > 0.1; };
       if (!std::all_of(solid->faces.begin(), solid->faces.end(), is_deep)) continue;
       const TriangleMeshPointer mesh = mesh_of(*solid);
       const Pose X = overlapping_pose(random, body.shape, solid);

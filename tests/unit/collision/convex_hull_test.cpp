@@ -54,7 +54,7 @@ void expect_sound(const ConvexHull& hull, const std::vector<Vec3>& points, doubl
             static_cast<long>(hull.edges.size()) + 2);
   std::size_t corners = 0;
   for (std::uint32_t f = 0; f < hull.faces.size(); ++f) {
-    const ConvexHull::Face& face = hull.faces[f];
+    const Polytope::Face& face = hull.faces[f];
     EXPECT_NEAR(face.normal.norm(), 1.0, 1e-15);
     for (const Vec3& p : points) ASSERT_LE(face.normal.dot(p) - face.offset, 1e-12 * extent);
     ASSERT_GE(face.count, 3u);
@@ -71,11 +71,11 @@ void expect_sound(const ConvexHull& hull, const std::vector<Vec3>& points, doubl
   EXPECT_EQ(corners, hull.loops.size());
   EXPECT_EQ(corners, 2 * hull.edges.size());
   std::set<std::pair<std::uint32_t, std::uint32_t>> seen;
-  for (const ConvexHull::Edge& edge : hull.edges) {
+  for (const Polytope::Edge& edge : hull.edges) {
     EXPECT_LT(edge.tail, edge.head);
     EXPECT_TRUE(seen.insert({edge.tail, edge.head}).second);
     const auto runs = [&](std::uint32_t f, std::uint32_t tail, std::uint32_t head) {
-      const ConvexHull::Face& face = hull.faces[f];
+      const Polytope::Face& face = hull.faces[f];
       for (std::uint32_t i = 0; i < face.count; ++i) {
         if (hull.loops[face.first + i] == tail) return hull.loops[face.first + (i + 1) % face.count] == head;
       }
@@ -124,7 +124,7 @@ TEST(ConvexHull, OfABoxHasSixFacesAndTwelveEdges) {
       const ConvexHull hull = build_convex_hull(points);
       expect_box(hull);
       expect_sound(hull, points, 1e-14);
-      EXPECT_EQ(hull.vertices, points);  // in the order of the input
+      EXPECT_EQ(hull.parts().vertices, points);  // in the order of the input
     }
   }
 }
@@ -212,9 +212,9 @@ TEST(ConvexHull, IsTheSameForTheSamePoints) {
   std::mt19937 random(7);
   const auto points = turned(prism(17, 0.7, 0.2), random_pose(random));
   const ConvexHull a = build_convex_hull(points), b = build_convex_hull(points);
-  EXPECT_EQ(a.vertices, b.vertices);
-  EXPECT_EQ(a.loops, b.loops);
-  EXPECT_EQ(a.neighbours, b.neighbours);
+  EXPECT_EQ(a.parts().vertices, b.parts().vertices);
+  EXPECT_EQ(a.parts().loops, b.parts().loops);
+  EXPECT_EQ(a.parts().neighbours, b.parts().neighbours);
   for (std::size_t f = 0; f < a.faces.size(); ++f) EXPECT_EQ(a.faces[f].normal, b.faces[f].normal);
 }
 

@@ -228,7 +228,7 @@ class DirectionReference {
   template <typename Offer>
   static void offer_faces(const Shape& shape, const Offer& offer) {
     if (const auto* hull = std::get_if<HullPointer>(&shape)) {
-      for (const ConvexHull::Face& face : (*hull)->faces)
+      for (const Polytope::Face& face : (*hull)->faces)
         offer(Vec3L(face.normal.cast<long double>().normalized()));
     }
   }

@@ -21,8 +21,8 @@ class DistanceReference {
       vertices_b_.push_back(R * v.cast<long double>() + X_AB.p.cast<long double>());
     for (const Vec3L& v : vertices_a_) try_faces(v, b, vertices_b_, 1.0L);
     for (const Vec3L& v : vertices_b_) try_faces(v, a, vertices_a_, -1.0L);
-    for (const ConvexHull::Edge& e : a.edges) {
-      for (const ConvexHull::Edge& f : b.edges) {
+    for (const Polytope::Edge& e : a.edges) {
+      for (const Polytope::Edge& f : b.edges) {
         try_edges(vertices_a_[e.tail], vertices_a_[e.head], vertices_b_[f.tail], vertices_b_[f.head]);
       }
     }
@@ -57,7 +57,7 @@ class DistanceReference {
   /// Foot of a point on each face, if it falls inside; the faces' borders are edges.
   void try_faces(const Vec3L& p, const Polytope& polytope, const std::vector<Vec3L>& vertices,
                  long double sign) {
-    for (const ConvexHull::Face& face : polytope.faces) {
+    for (const Polytope::Face& face : polytope.faces) {
       const auto loop = polytope.loop(face);
       const Vec3L n = face_normal_l(polytope, face, vertices);
       bool inside = true;

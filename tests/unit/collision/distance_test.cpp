@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "collision/box_polytope.h"
 #include "collision/segment.h"
 #include "distance_reference.h"
 #include "math/rotation.h"
@@ -16,17 +17,18 @@ struct Errors {
   double truth = 0.0, distance = 0.0, bounds = 0.0, points = 0.0, plane = 0.0;  // shares of the size
 };
 
-Polytope view_of_shape(const Shape& shape, const BoxFeatures& box) {
+const Polytope& polytope_of(const Shape& shape, const BoxPolytope& box) {
   const HullPointer* hull = std::get_if<HullPointer>(&shape);
-  return hull != nullptr ? view_of(**hull) : box.view();
+  if (hull != nullptr) return **hull;
+  return box;
 }
 
 void judge(const Shape& a, const Shape& b, const Pose& X_AB, Errors& errors) {
   const Box* box_a = std::get_if<Box>(&a);
   const Box* box_b = std::get_if<Box>(&b);
-  const BoxFeatures features_a(box_a != nullptr ? *box_a : Box{Vec3::Ones()});
-  const BoxFeatures features_b(box_b != nullptr ? *box_b : Box{Vec3::Ones()});
-  const DistanceReference reference(view_of_shape(a, features_a), view_of_shape(b, features_b), X_AB);
+  const BoxPolytope features_a(box_a != nullptr ? *box_a : Box{Vec3::Ones()});
+  const BoxPolytope features_b(box_b != nullptr ? *box_b : Box{Vec3::Ones()});
+  const DistanceReference reference(polytope_of(a, features_a), polytope_of(b, features_b), X_AB);
   const double size = bounding_radius(a) + bounding_radius(b);
   const double truth = static_cast<double>(reference.distance());
   const auto worsen = [size](double& error, double by) { error = std::max(error, std::abs(by) / size); };
@@ -129,10 +131,8 @@ TEST(Distance, CornersAreATriangle) {
   int overlaps = 0;
   for (int i = 0; i < 200; ++i) {
     const std::array<Vec3, 3> corners = {random.vector(-1, 1), random.vector(-1, 1), random.vector(-1, 1)};
-    const auto hull = std::make_shared<ConvexHull>();
-    hull->vertices.assign(corners.begin(), corners.end());
-    hull->radius = bounding_radius(corners);
-    add_fours(*hull);
+    const auto hull = std::make_shared<const ConvexHull>(
+        ConvexHull::Parts{.vertices = {corners.begin(), corners.end()}, .radius = bounding_radius(corners)});
     for (const Shape& a : random_shapes(random)) {
       const Pose X_AB = random.pose(2.0);
       const Distance expected = compute_distance(a, HullPointer(hull), X_AB);

@@ -1,5 +1,6 @@
 // libccd behind its certificate: whatever it answers, "apart" is always proven.
 #include "collision/gjk.h"
+#include "collision/box_polytope.h"
 
 #include <gtest/gtest.h>
 
@@ -22,8 +23,8 @@ TEST(Gjk, ApartIsNeverFalse) {
     const double gap = i % 3 == 0 ? 0.0 : b.half_extents.x() * random.log_uniform(1e-9, 1.0);
     X_AB.p = Vec3(0.1 * b.half_extents.x(), 0, a.half_extents.z() + height + (i % 2 == 0 ? gap : -gap));
     const GjkAnswer answer = decide_apart(a, b, X_AB);
-    const BoxFeatures features_a(a), features_b(b);
-    const PolytopeReference truth(features_a.view(), {}, features_b.view(), X_AB);
+    const BoxPolytope features_a(a), features_b(b);
+    const PolytopeReference truth(features_a, {}, features_b, X_AB);
     over_budget += answer.budget_hit;
     EXPECT_NEAR(answer.axis_A.norm(), 1.0, 1e-15);
     if (answer.kind == GjkAnswer::Kind::apart) {
@@ -50,7 +51,7 @@ TEST(Gjk, RoundShapes) {
     const Sphere sphere{random.uniform(0.1, 1.0)};
     const Pose X_AB = random.pose(1.5);
     const GjkAnswer answer = decide_apart(hull, sphere, X_AB);
-    const double gap = compute_distance(view_of(*hull), X_AB.p, 1e300).distance - sphere.radius;
+    const double gap = compute_distance(*hull, X_AB.p, 1e300).distance - sphere.radius;
     if (answer.kind == GjkAnswer::Kind::apart) {
       EXPECT_LE(answer.gap, gap);
     } else if (answer.kind == GjkAnswer::Kind::touching) {

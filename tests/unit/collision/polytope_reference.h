@@ -18,7 +18,7 @@ inline Mat3L rotation_matrix_l(const Quat& q) {
 }
 
 /// Rebuilt from the vertices, placed anywhere: the polytope's own normals are rounded to 64 bits.
-inline Vec3L face_normal_l(const Polytope& polytope, const ConvexHull::Face& face,
+inline Vec3L face_normal_l(const Polytope& polytope, const Polytope::Face& face,
                            const std::vector<Vec3L>& vertices) {
   const auto loop = polytope.loop(face);
   Vec3L n = Vec3L::Zero();
@@ -71,10 +71,10 @@ class PolytopeReference {
     axes_.push_back(-n);
   }
   void add_axes(const Polytope& polytope, const std::vector<Vec3L>& vertices) {
-    for (const ConvexHull::Face& face : polytope.faces) {
+    for (const Polytope::Face& face : polytope.faces) {
       add_axis(face_normal_l(polytope, face, vertices));
     }
-    for (const ConvexHull::Edge& edge : polytope.edges)
+    for (const Polytope::Edge& edge : polytope.edges)
       edges_.push_back(vertices[edge.head] - vertices[edge.tail]);
   }
 

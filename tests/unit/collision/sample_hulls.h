@@ -6,18 +6,18 @@
 #include <map>
 #include <memory>
 
-#include "collision/polytope.h"
+#include "collision/box_polytope.h"
 #include "random_pose.h"
 
 namespace tumble::test {
 
-inline HullPointer finish_hull(ConvexHull hull) {
+inline HullPointer finish_hull(ConvexHull::Parts hull) {
   add_topology(hull);
   return std::make_shared<const ConvexHull>(std::move(hull));
 }
 
 inline HullPointer random_hull(RandomPose& random, int points, const Vec3& radii) {
-  ConvexHull hull;
+  ConvexHull::Parts hull;
   for (int i = 0; i < points; ++i) {
     const Vec3 d = random.direction();
     hull.vertices.push_back(d.cwiseProduct(radii));
@@ -44,9 +44,8 @@ inline HullPointer random_hull(RandomPose& random, int points, const Vec3& radii
 }
 
 inline HullPointer box_hull(const Box& box) {
-  const BoxFeatures features(box);
-  const Polytope view = features.view();
-  ConvexHull hull;
+  const BoxPolytope view(box);
+  ConvexHull::Parts hull;
   hull.vertices.assign(view.vertices.begin(), view.vertices.end());
   hull.faces.assign(view.faces.begin(), view.faces.end());
   hull.loops.assign(view.loops.begin(), view.loops.end());

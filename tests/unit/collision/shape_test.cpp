@@ -69,7 +69,7 @@ TEST(Shape, SupportOfMirroredDirectionsIsMirrored) {
 
 TEST(Shape, ClimbingOverAManyVertexHullFindsTheFurthest) {
   // A fine cylinder: 120 vertices, above the number that are scanned.
-  ConvexHull hull;
+  ConvexHull::Parts hull;
   constexpr std::uint32_t kSides = 60;
   std::vector<std::uint32_t> top, bottom;
   for (std::uint32_t i = 0; i < kSides; ++i) {

@@ -5,6 +5,7 @@
 
 #include <array>
 
+#include "collision/box_polytope.h"
 #include "collision/ray_cast.h"
 #include "sample_shapes.h"
 
@@ -13,11 +14,10 @@ namespace {
 
 /// Every face as a grid of n x n quads, each two triangles, counter-clockwise from outside.
 TriangleMeshPointer skin_of(const Box& box, std::uint32_t n) {
-  const BoxFeatures features(box);
-  const Polytope view = features.view();
+  const BoxPolytope view(box);
   std::vector<Vec3> vertices;
   std::vector<TriangleMesh::Corners> triangles;
-  for (const ConvexHull::Face& face : view.faces) {
+  for (const Polytope::Face& face : view.faces) {
     const auto loop = view.loop(face);
     const Vec3 origin = view.vertices[loop[0]];
     const Vec3 u = (view.vertices[loop[1]] - origin) / n, v = (view.vertices[loop[3]] - origin) / n;

@@ -62,8 +62,8 @@ Inertia by_chance(const Vec3& half, const std::function<bool(const Vec3&)>& is_i
 }
 
 /// Made by hand, so that this test does not lean on the hull builder.
-ConvexHull box_hull(const Vec3& h) {
-  ConvexHull hull;
+ConvexHull::Parts box_hull(const Vec3& h) {
+  ConvexHull::Parts hull;
   for (int i = 0; i < 8; ++i) {
     hull.vertices.push_back(h.cwiseProduct(Vec3(i & 1 ? 1.0 : -1.0, i & 2 ? 1.0 : -1.0, i & 4 ? 1.0 : -1.0)));
   }
@@ -72,7 +72,7 @@ ConvexHull box_hull(const Vec3& h) {
   return hull;
 }
 
-Inertia hull_inertia(const ConvexHull& hull, double density) {
+Inertia hull_inertia(const ConvexHull::Parts& hull, double density) {
   return compute_inertia(std::make_shared<const ConvexHull>(hull), density);
 }
 
@@ -177,7 +177,7 @@ TEST(MassProperties, AHullTurnedAndFarAwayEqualsTheTransformedBox) {
   for (int i = 0; i < 20; ++i) {
     const Vec3 h(0.3, 0.5, 1.1);
     const Pose X{random_rotation(random), Vec3(10.0 * i, -3.0, 7.0)};
-    ConvexHull hull = box_hull(h);
+    ConvexHull::Parts hull = box_hull(h);
     for (Vec3& vertex : hull.vertices) vertex = X * vertex;
     // The vertices themselves are rounded to 1e-16 of 200 m; measured 2.2e-14.
     EXPECT_LT(distance(hull_inertia(hull, 700.0), transformed(compute_inertia(Box{h}, 700.0), X)), 1e-12);
@@ -185,7 +185,7 @@ TEST(MassProperties, AHullTurnedAndFarAwayEqualsTheTransformedBox) {
 }
 
 TEST(MassProperties, CornerTetrahedronHasItsKnownIntegrals) {
-  ConvexHull hull;
+  ConvexHull::Parts hull;
   hull.vertices = {Vec3::Zero(), Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()};
   hull.loops = {0, 2, 1, 0, 3, 2, 0, 1, 3, 1, 2, 3};
   for (std::uint32_t f = 0; f < 4; ++f) hull.faces.push_back({Vec3::Zero(), 0.0, 3 * f, 3});
@@ -201,7 +201,7 @@ TEST(MassProperties, CornerTetrahedronHasItsKnownIntegrals) {
 
 TEST(MassProperties, AnIrregularHullEqualsMonteCarlo) {
   // A box sheared and tapered: still convex with planar faces.
-  ConvexHull hull = box_hull(Vec3(0.5, 0.4, 0.6));
+  ConvexHull::Parts hull = box_hull(Vec3(0.5, 0.4, 0.6));
   for (Vec3& v : hull.vertices) {
     if (v.z() > 0) v = Vec3(0.5 * v.x() + 0.2, 0.5 * v.y() - 0.1, v.z());
   }

@@ -261,9 +261,7 @@ TEST_F(Publisher, BodiesLargerThanAMessageRunOn) {
   }
   scenery.change_catalog([&](Catalog& catalog) {
     auto big = std::make_shared<BodyModel>(*make_model(1, 40));
-    auto hull = std::make_shared<ConvexHull>();
-    hull->vertices = points;
-    big->parts[20].shape = HullPointer(hull);
+    big->parts[20].shape = std::make_shared<const ConvexHull>(ConvexHull::Parts{.vertices = points});
     catalog.models[1] = big;
   });
   Receiver receiver;

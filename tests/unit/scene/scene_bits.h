@@ -70,11 +70,11 @@ class SceneBits {
   void add(const HullPointer& hull) {
     for (const Vec3& p : hull->vertices) add(p);
     for (const std::uint32_t i : hull->loops) add(std::uint64_t{i});
-    for (const ConvexHull::Face& face : hull->faces) {
+    for (const Polytope::Face& face : hull->faces) {
       add(face.normal);
       add(face.offset);
     }
-    for (const ConvexHull::Edge& edge : hull->edges) {
+    for (const Polytope::Edge& edge : hull->edges) {
       for (const std::uint32_t i : {edge.tail, edge.head, edge.left_face, edge.right_face})
         add(std::uint64_t{i});
     }

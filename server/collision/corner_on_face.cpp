@@ -1,0 +1,34 @@
+// See corner_on_face.h. Squares are compared: no roots, no divisions.
+#include "collision/corner_on_face.h"
+
+namespace tumble {
+
+double least_slope2(const StandingCorner& corner, double gap) {
+  const Polytope& body = corner.body;
+  const Vec3& foot = body.vertices[corner.vertex];
+  double rise2 = 1.0, length2 = 1.0;
+  const std::uint32_t end = body.neighbour_offsets[corner.vertex + 1];
+  for (std::uint32_t k = body.neighbour_offsets[corner.vertex]; k < end; ++k) {
+    const Vec3 along = body.vertices[body.neighbours[k]] - foot;
+    const double rise = corner.up.dot(along), square = along.squaredNorm();
+    if (!(rise > gap)) return 0.0;
+    if (rise * rise * length2 < rise2 * square) rise2 = rise * rise, length2 = square;
+  }
+  return rise2 / length2;
+}
+
+bool holds_disc(const Polytope& polytope, std::uint32_t face, const Vec3& p, double gap, double slope2) {
+  const Vec3& normal = polytope.faces[face].normal;
+  const auto loop = polytope.loop(polytope.faces[face]);
+  Vec3 tail = polytope.vertices[loop.back()];
+  for (const std::uint32_t vertex : loop) {
+    const Vec3& head = polytope.vertices[vertex];
+    const Vec3 along = head - tail;
+    const double inside = along.cross(p - tail).dot(normal);  // times the side's length
+    if (!(inside > 0.0 && inside * inside * slope2 > gap * gap * along.squaredNorm())) return false;
+    tail = head;
+  }
+  return true;
+}
+
+}  // namespace tumble

@@ -23,6 +23,15 @@ constexpr std::uint32_t box_face_left_of(std::uint32_t tail, std::uint32_t head)
   return i / 4;
 }
 
+/// The face beyond each side of each face: its plane is the plane of the side.
+constexpr std::array<std::uint32_t, 24> box_faces_beyond() {
+  std::array<std::uint32_t, 24> beyond{};
+  for (std::uint32_t i = 0; i < 24; ++i) {
+    beyond[i] = box_face_left_of(kBoxLoops[i % 4 == 3 ? i - 3 : i + 1], kBoxLoops[i]);
+  }
+  return beyond;
+}
+
 constexpr std::array<Polytope::Edge, 12> box_edges() {
   std::array<Polytope::Edge, 12> edges{};
   std::size_t n = 0;
@@ -48,7 +57,8 @@ constexpr std::array<std::uint32_t, 24> box_edges_around() {
 }
 
 constexpr std::array<std::uint32_t, 24> kBoxNeighbours = box_neighbours(),
-                                        kBoxEdgesAround = box_edges_around();
+                                        kBoxEdgesAround = box_edges_around(),
+                                        kBoxFacesBeyond = box_faces_beyond();
 constexpr std::array<Polytope::Edge, 12> kBoxEdges = box_edges();
 
 }  // namespace
@@ -64,11 +74,15 @@ BoxPolytope::BoxPolytope(const Box& box) {
     own_faces_[i] = {i % 2 ? Vec3(-Vec3::Unit(axis)) : Vec3::Unit(axis), h[axis], 4 * i, 4,
                      2.0 * h1 * h2 / (h1 + h2)};
   }
+  for (std::uint32_t i = 0; i < 24; ++i) {
+    const Face& beyond = own_faces_[kBoxFacesBeyond[i]];
+    own_sides_[i] = {beyond.normal, beyond.offset};
+  }
   put_in_fours(own_vertices_, own_vertex_fours_.data());
   put_in_fours(own_faces_, own_face_fours_.data());
-  static_cast<Polytope&>(*this) = {own_vertices_,        kBoxLoops,      own_faces_,      kBoxEdges,
-                                   kBoxNeighbourOffsets, kBoxNeighbours, kBoxEdgesAround, own_vertex_fours_,
-                                   own_face_fours_,      Vec3::Zero(),   h.norm()};
+  static_cast<Polytope&>(*this) = {
+      own_vertices_,  kBoxLoops,       own_sides_,        own_faces_,      kBoxEdges,    kBoxNeighbourOffsets,
+      kBoxNeighbours, kBoxEdgesAround, own_vertex_fours_, own_face_fours_, Vec3::Zero(), h.norm()};
 }
 
 }  // namespace tumble

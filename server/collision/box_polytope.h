@@ -17,6 +17,7 @@ class BoxPolytope : public Polytope {
 
  private:
   std::array<Vec3, 8> own_vertices_;
+  std::array<Side, 24> own_sides_;
   std::array<Face, 6> own_faces_;
   std::array<FourVectors, 2> own_vertex_fours_;
   std::array<FourFaces, 2> own_face_fours_;

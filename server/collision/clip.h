@@ -6,6 +6,8 @@
 #include <array>
 
 #include "collision/manifold_builder.h"
+#include "collision/polytope.h"
+#include "collision/segment.h"
 #include "math/four.h"
 
 namespace tumble {
@@ -13,14 +15,42 @@ namespace tumble {
 /// Faces with more vertices are thinned to this many, always with the deepest vertex kept.
 inline constexpr int kMaxFaceVertices = 96;
 
+/// One side of the reference face, from vertex `tail` to `head`: inside is nx x + ny y <= offset, (nx, ny) unit.
+struct ClipSide {
+  /// How far p lies outside [m].
+  double outside(const Four& p) const { return nx * p[0] + ny * p[1] - offset; }
+
+  double nx, ny, offset;
+  std::uint32_t tail, head;
+  std::uint32_t mark = 0;  ///< A bit by which corners on this side can be told.
+};
+
+/// Axes in the plane of a face with this unit normal, from one of its vertices: u along its first side, v = normal x u.
+class FaceAxes {
+ public:
+  FaceAxes(const Vec3& origin, const Vec3& normal, const Polytope::Side& first)
+      : origin_(origin),
+        u_(first.outward.isZero(0.0) ? perpendicular_to(normal) : normal.cross(first.outward)),
+        v_(normal.cross(u_)) {}
+  const Vec3& origin() const { return origin_; }
+  const Vec3& u() const { return u_; }
+  /// A side, from vertex `tail` to `head`, as these axes see it.
+  ClipSide see(const Polytope::Side& side, std::uint32_t tail, std::uint32_t head) const {
+    return {u_.dot(side.outward), v_.dot(side.outward), side.offset - side.outward.dot(origin_), tail, head};
+  }
+
+ private:
+  Vec3 origin_, u_, v_;
+};
+
 /// The reference face's plane in A's frame, in right-handed unit axes u, v, f, and how it is seen along a contact normal
 /// (unit, from the reference to the incident body), which need not be f, only near it.
 class FacePlane {
  public:
-  /// A point of the face [m], the first axis (of any length; zero: any) and the unit outward normal of the face.
-  FacePlane(const Vec3& origin_A, const Vec3& along_A, const Vec3& f_A, const Vec3& n_A)
+  /// A point of the face [m], its first axis and its unit outward normal.
+  FacePlane(const Vec3& origin_A, const Vec3& u_A, const Vec3& f_A, const Vec3& n_A)
       : origin_A_(origin_A),
-        u_A_(direction_or(along_A, perpendicular_to(f_A))),
+        u_A_(u_A),
         v_A_(f_A.cross(u_A_)),
         f_A_(f_A),
         n_A_(n_A),
@@ -35,11 +65,6 @@ class FacePlane {
     const double z = f_A_.dot(d) * gap_per_height_;
     return {u_A_.dot(d) - z * un_, v_A_.dot(d) - z * vn_, z};
   }
-  /// x, y of a point of the plane.
-  Vec3 on_plane(const Vec3& p_A) const {
-    const Vec3 d = p_A - origin_A_;
-    return {u_A_.dot(d), v_A_.dot(d), 0.0};
-  }
   /// The middle between such a point and its foot on the plane, in A.
   Vec3 middle_A(const Vec3& p) const {
     return origin_A_ + p.x() * u_A_ + p.y() * v_A_ + (0.5 * p.z()) * n_A_;
@@ -48,16 +73,6 @@ class FacePlane {
  private:
   Vec3 origin_A_, u_A_, v_A_, f_A_, n_A_;
   double gap_per_height_, un_, vn_;
-};
-
-/// One side of the reference face, from vertex `tail` to `head`: inside is nx x + ny y <= offset, (nx, ny) unit.
-struct ClipSide {
-  /// How far p lies outside [m].
-  double outside(const Four& p) const { return nx * p[0] + ny * p[1] - offset; }
-
-  double nx, ny, offset;
-  std::uint32_t tail, head;
-  std::uint32_t mark = 0;  ///< A bit by which corners on this side can be told.
 };
 
 /// A convex polygon over the reference plane (z = gap along the normal).

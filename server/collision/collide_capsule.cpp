@@ -115,7 +115,8 @@ Meeting find_closest(const Polytope& polytope, const Segment& core, const CoreHe
       if (heights[i].at(side) > heights[face].at(side)) face = i;
     }
     const double height = heights[face].at(side);
-    if (!(height > 0.0 && height < best.distance) || !is_over_face(polytope, face, core.at(side))) continue;
+    if (!(height > 0.0 && height < best.distance) || height_beside_face(polytope, face, core.at(side)) > 0.0)
+      continue;
     best = {height, polytope.faces[face].normal, kNoFeature, face};
   }
   for (std::uint32_t i = 0; i < polytope.edges.size(); ++i) {
@@ -163,9 +164,8 @@ Manifold lie_on_face(const CapsuleQuery& q, std::uint32_t index, const Vec3& nor
   const auto loop = q.polytope.loop(face);
   for (std::size_t i = 0; i < loop.size(); ++i) {
     const std::uint32_t from = loop[i], to = loop[i + 1 == loop.size() ? 0 : i + 1];
-    const Vec3 along = q.polytope.vertices[to] - q.polytope.vertices[from];
-    const Vec3 outward = direction_or(along.cross(face.normal), Vec3::Zero());
-    const double distance = outward.dot(centre - q.polytope.vertices[from]), rise = outward.dot(reach);
+    const Polytope::Side& side = q.polytope.sides[face.first + i];
+    const double distance = side.outward.dot(centre) - side.offset, rise = side.outward.dot(reach);
     const double low_side = distance + low.s * rise, high_side = distance + high.s * rise;
     const bool low_out = low_side > tolerance.inside, high_out = high_side > tolerance.inside;
     over_face = over_face && !(low_out && high_out);

@@ -30,11 +30,17 @@ class PlacedFace {
   std::uint32_t index(std::size_t k, std::size_t first = 0) const {
     return is_thinned() ? loop_[(first + k * loop_.size() / count()) % loop_.size()] : loop_[k];
   }
-  Vec3 vertex_A(std::size_t k, std::size_t first = 0) const {
-    const Vec3& v = body_.vertices[index(k, first)];
-    return pair_ == nullptr ? v : pair_->R_AB * v + pair_->p_AB;
+  const Vec3& vertex(std::size_t k, std::size_t first = 0) const { return body_.vertices[index(k, first)]; }
+  const Vec3& normal() const { return face_.normal; }
+  std::size_t after(std::size_t k) const { return k + 1 == count() ? 0 : k + 1; }
+  /// From vertex k to the next one.
+  Polytope::Side side(std::size_t k) const {
+    return is_thinned() ? make_side(face_.normal, vertex(k), vertex(after(k))) : body_.sides[face_.first + k];
   }
-  Vec3 normal_A() const { return pair_ == nullptr ? face_.normal : pair_->R_AB * face_.normal; }
+  Vec3 to_A(const Vec3& p) const { return pair_ == nullptr ? p : pair_->R_AB * p + pair_->p_AB; }
+  Vec3 turned_to_A(const Vec3& d) const { return pair_ == nullptr ? d : pair_->R_AB * d; }
+  Vec3 vertex_A(std::size_t k, std::size_t first = 0) const { return to_A(vertex(k, first)); }
+  Vec3 normal_A() const { return turned_to_A(face_.normal); }
 
   /// Place in the loop of the vertex that is lowest along n.
   std::size_t lowest_along(const Vec3& n_A) const {
@@ -53,30 +59,11 @@ class PlacedFace {
   const PolytopePair* pair_;
 };
 
-/// The plane of a face, with the contact's normal away from its body.
-FacePlane plane_of(const PlacedFace& reference, const Vec3& n_A) {
-  const Vec3 origin_A = reference.vertex_A(0);
-  return {origin_A, reference.vertex_A(1) - origin_A, reference.normal_A(), n_A};
-}
-
-/// By each side of a face that has a length.
-void cut_by_sides(const PlacedFace& face, const FacePlane& plane, double tolerance, ClipPolygon& polygon) {
-  Vec3 tail = Vec3::Zero();
-  for (std::size_t k = 0; k < face.count(); ++k) {
-    const std::size_t next = k + 1 == face.count() ? 0 : k + 1;
-    const Vec3 head = plane.on_plane(face.vertex_A(next));
-    const double x = head.y() - tail.y(), y = tail.x() - head.x(), length = std::sqrt(x * x + y * y);
-    if (length > 0.0) {
-      const double nx = x / length, ny = y / length;
-      polygon.cut({nx, ny, nx * tail.x() + ny * tail.y(), face.index(k), face.index(next)}, tolerance);
-    }
-    tail = head;
-  }
-}
-
 Manifold clip_faces(const PlacedFace& reference, const PlacedFace& incident, bool reference_is_a,
                     const Facet& facet, double margin, bool face_to_face) {
-  const FacePlane plane = plane_of(reference, reference_is_a ? facet.normal_A : Vec3(-facet.normal_A));
+  const FaceAxes axes(reference.vertex(0), reference.normal(), reference.side(0));
+  const FacePlane plane(reference.to_A(axes.origin()), reference.turned_to_A(axes.u()), reference.normal_A(),
+                        reference_is_a ? facet.normal_A : Vec3(-facet.normal_A));
   const ContactTolerance tolerance =
       ContactTolerance::of(std::min(reference.width(), incident.width()), face_to_face);
   ClipPolygon polygon(reference_is_a);
@@ -85,7 +72,10 @@ Manifold clip_faces(const PlacedFace& reference, const PlacedFace& incident, boo
     polygon.add_vertex(plane.to_plane(incident.vertex_A(k, first)), incident.index(k, first));
   }
   polygon.close();
-  cut_by_sides(reference, plane, tolerance.inside, polygon);
+  for (std::size_t k = 0; k < reference.count(); ++k) {
+    polygon.cut(axes.see(reference.side(k), reference.index(k), reference.index(reference.after(k))),
+                tolerance.inside);
+  }
   return polygon.make_manifold(plane, facet.normal_A, facet.separation <= 0.0, margin, tolerance.merge);
 }
 

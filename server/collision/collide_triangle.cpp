@@ -250,14 +250,12 @@ class TriangleQuery {
     return builder.finish();
   }
 
-  static std::optional<ClipSide> side_between(const Vec3& tail, const Vec3& head) {
-    const double x = head.y() - tail.y(), y = tail.x() - head.x(), length = std::sqrt(x * x + y * y);
-    if (!(length > 0.0)) return std::nullopt;
-    return ClipSide{x / length, y / length, (x * tail.x() + y * tail.y()) / length, 0, 0};
-  }
-
   Manifold lie_on_triangle() const {
-    const FacePlane plane(t_.corner[0], t_.along(0), t_.normal, t_.normal);
+    const auto side = [&](std::size_t k) {
+      return make_side(t_.normal, t_.corner[k], t_.corner[PlacedTriangle::next(k)]);
+    };
+    const FaceAxes axes(t_.corner[0], t_.normal, side(0));
+    const FacePlane plane(axes.origin(), axes.u(), t_.normal, t_.normal);
     ClipPolygon polygon(false);
     double width = t_.width();
     if (core_.faces.empty()) {
@@ -277,13 +275,9 @@ class TriangleQuery {
     polygon.close();
     const ContactTolerance tolerance = ContactTolerance::of(width);
     for (std::size_t k = 0; k < 3; ++k) {
-      auto side =
-          side_between(plane.to_plane(t_.corner[k]), plane.to_plane(t_.corner[PlacedTriangle::next(k)]));
-      if (!side) continue;
-      side->tail = t_.vertex[k];
-      side->head = t_.vertex[PlacedTriangle::next(k)];
-      side->mark = 1u << k;
-      polygon.cut(*side, tolerance.inside);
+      ClipSide seam = axes.see(side(k), t_.vertex[k], t_.vertex[PlacedTriangle::next(k)]);
+      seam.mark = 1u << k;
+      polygon.cut(seam, tolerance.inside);
     }
     return collect(polygon, plane, -t_.normal, tolerance.merge);
   }
@@ -291,8 +285,9 @@ class TriangleQuery {
   Manifold lie_on_body() const {
     const Polytope::Face& face = core_.faces[best_.body];
     const auto loop = core_.loop(face);
-    const Vec3& origin = core_.vertices[loop[0]];
-    const FacePlane plane(origin, core_.vertices[loop[1]] - origin, face.normal, face.normal);
+    const auto sides = core_.sides_of(face);
+    const FaceAxes axes(core_.vertices[loop[0]], face.normal, sides[0]);
+    const FacePlane plane(axes.origin(), axes.u(), face.normal, face.normal);
     ClipPolygon polygon(true);
     for (std::uint32_t k = 0; k < 3; ++k) {
       polygon.add_vertex(plane.to_plane(t_.corner[k]), t_.vertex[k], 1u << k);
@@ -300,12 +295,7 @@ class TriangleQuery {
     polygon.close();
     const ContactTolerance tolerance = ContactTolerance::of(std::min(face.width, t_.width()));
     for (std::size_t i = 0; i < loop.size(); ++i) {
-      const std::uint32_t tail = loop[i], head = loop[i + 1 == loop.size() ? 0 : i + 1];
-      auto side = side_between(plane.to_plane(core_.vertices[tail]), plane.to_plane(core_.vertices[head]));
-      if (!side) continue;
-      side->tail = tail;
-      side->head = head;
-      polygon.cut(*side, tolerance.inside);
+      polygon.cut(axes.see(sides[i], loop[i], loop[i + 1 == loop.size() ? 0 : i + 1]), tolerance.inside);
     }
     return collect(polygon, plane, face.normal, tolerance.merge);
   }

@@ -229,10 +229,10 @@ ConvexHull::ConvexHull(Parts parts)
       own_face_fours_((parts_.faces.size() + 3) / 4) {
   put_in_fours(parts_.vertices, own_vertex_fours_.data());
   put_in_fours(parts_.faces, own_face_fours_.data());
-  static_cast<Polytope&>(*this) = {
-      parts_.vertices,          parts_.loops,      parts_.faces,        parts_.edges,
-      parts_.neighbour_offsets, parts_.neighbours, parts_.edges_around, own_vertex_fours_,
-      own_face_fours_,          parts_.centre,     parts_.radius};
+  static_cast<Polytope&>(*this) = {parts_.vertices,   parts_.loops,        parts_.sides,
+                                   parts_.faces,      parts_.edges,        parts_.neighbour_offsets,
+                                   parts_.neighbours, parts_.edges_around, own_vertex_fours_,
+                                   own_face_fours_,   parts_.centre,       parts_.radius};
 }
 
 double bounding_radius(std::span<const Vec3> points) {
@@ -246,7 +246,10 @@ void add_topology(ConvexHull::Parts& hull) {
   for (std::uint32_t f = 0; f < hull.faces.size(); ++f) {
     const ConvexHull::Face& face = hull.faces[f];
     for (std::uint32_t i = 0; i < face.count; ++i) {
-      left_of[{hull.loops[face.first + i], hull.loops[face.first + (i + 1) % face.count]}] = f;
+      const std::uint32_t tail = hull.loops[face.first + i],
+                          head = hull.loops[face.first + (i + 1) % face.count];
+      left_of[{tail, head}] = f;
+      hull.sides.push_back(make_side(face.normal, hull.vertices[tail], hull.vertices[head]));
     }
   }
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> edge_of;

@@ -16,6 +16,7 @@ class ConvexHull : public Polytope {
   struct Parts {
     std::vector<Vec3> vertices{};  ///< [m], only points on the hull.
     std::vector<std::uint32_t> loops{};
+    std::vector<Side> sides{};
     std::vector<Face> faces{};
     std::vector<Edge> edges{};
     std::vector<std::uint32_t> neighbour_offsets{}, neighbours{}, edges_around{};
@@ -38,7 +39,7 @@ class ConvexHull : public Polytope {
   std::vector<FourFaces> own_face_fours_;
 };
 
-/// Fills in edges, neighbours, edges around, widths, centre and radius from vertices, loops and faces.
+/// Fills in sides, edges, neighbours, edges around, widths, centre and radius from vertices, loops and faces.
 void add_topology(ConvexHull::Parts& hull);
 
 /// Largest |point| [m].

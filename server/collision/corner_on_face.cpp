@@ -18,17 +18,8 @@ double least_slope2(const StandingCorner& corner, double gap) {
 }
 
 bool holds_disc(const Polytope& polytope, std::uint32_t face, const Vec3& p, double gap, double slope2) {
-  const Vec3& normal = polytope.faces[face].normal;
-  const auto loop = polytope.loop(polytope.faces[face]);
-  Vec3 tail = polytope.vertices[loop.back()];
-  for (const std::uint32_t vertex : loop) {
-    const Vec3& head = polytope.vertices[vertex];
-    const Vec3 along = head - tail;
-    const double inside = along.cross(p - tail).dot(normal);  // times the side's length
-    if (!(inside > 0.0 && inside * inside * slope2 > gap * gap * along.squaredNorm())) return false;
-    tail = head;
-  }
-  return true;
+  const double inside = -height_beside_face(polytope, face, p);
+  return inside > 0.0 && inside * inside * slope2 > gap * gap;
 }
 
 }  // namespace tumble

@@ -365,14 +365,11 @@ FacetTouch FacetSearch::touch_of_face(const Facet& facet) const {
       of_a ? FacetTouch{foot, corner, kInfinity, kInfinity} : FacetTouch{corner, foot, kInfinity, kInfinity};
 
   const Polytope::Face& face = polytope.faces[of_a ? facet.a : facet.b];
-  const auto loop = polytope.loop(face);
-  for (std::size_t i = 0; i < loop.size(); ++i) {
-    const Vec3& tail = polytope.vertices[loop[i]];
+  for (const std::uint32_t vertex : polytope.loop(face)) {
     // A face that was merged from nearly coplanar ones lies partly below its plane.
-    if (face.normal.dot(tail) < face.offset - tie_) return {foot, foot, -1.0, -1.0};
-    const Vec3 along = polytope.vertices[loop[i + 1 == loop.size() ? 0 : i + 1]] - tail;
-    touch.clearance = std::min(touch.clearance, face.normal.cross(along).dot(point - tail) / along.norm());
+    if (face.normal.dot(polytope.vertices[vertex]) < face.offset - tie_) return {foot, foot, -1.0, -1.0};
   }
+  touch.clearance = -height_beside_face(polytope, of_a ? facet.a : facet.b, point);
   if (of_a) {
     touch.lead = lead_of_corner(b_.polytope, cache_.vertex_B, R_.transpose() * facet.normal_A, kInfinity);
   } else {

@@ -49,10 +49,10 @@ void offer_face(const Polytope& polytope, std::uint32_t index, const Vec3& p, do
   bool inside = true;
   for (std::size_t i = 0; i < loop.size(); ++i) {
     const Vec3& tail = polytope.vertices[loop[i]];
-    const Vec3& head = polytope.vertices[loop[i + 1 == loop.size() ? 0 : i + 1]];
-    const Vec3 along = head - tail, d = p - tail;
-    if (along.cross(d).dot(face.normal) >= -nearest.tie() * along.norm()) continue;
+    const Vec3 d = p - tail;
+    if (polytope.sides[face.first + i].outward.dot(d) <= nearest.tie()) continue;
     inside = false;
+    const Vec3 along = polytope.vertices[loop[i + 1 == loop.size() ? 0 : i + 1]] - tail;
     const double length2 = along.squaredNorm();
     const double s = length2 > 0.0 ? std::clamp(along.dot(d) / length2, 0.0, 1.0) : 0.0;
     const Vec3 foot = tail + s * along, apart = p - foot;
@@ -133,23 +133,10 @@ std::uint32_t flatter_face(const Polytope& polytope, const Polytope::Edge& edge,
   return along(edge.left_face) >= along(edge.right_face) ? edge.left_face : edge.right_face;
 }
 
-bool is_over_face(const Polytope& polytope, std::uint32_t face, const Vec3& p) {
-  const auto loop = polytope.loop(polytope.faces[face]);
-  for (std::size_t i = 0; i < loop.size(); ++i) {
-    const Vec3& tail = polytope.vertices[loop[i]];
-    const Vec3 along = polytope.vertices[loop[i + 1 == loop.size() ? 0 : i + 1]] - tail;
-    if (along.cross(p - tail).dot(polytope.faces[face].normal) < 0.0) return false;
-  }
-  return true;
-}
-
 double height_beside_face(const Polytope& polytope, std::uint32_t face, const Vec3& p) {
-  const auto loop = polytope.loop(polytope.faces[face]);
   double height = -kInfinity;
-  for (std::size_t i = 0; i < loop.size(); ++i) {
-    const Vec3& tail = polytope.vertices[loop[i]];
-    const Vec3 along = polytope.vertices[loop[i + 1 == loop.size() ? 0 : i + 1]] - tail;
-    height = std::max(height, -along.cross(p - tail).dot(polytope.faces[face].normal) / along.norm());
+  for (const Polytope::Side& side : polytope.sides_of(polytope.faces[face])) {
+    height = std::max(height, side.outward.dot(p) - side.offset);
   }
   return height;
 }
@@ -175,7 +162,7 @@ PointDistance compute_distance(const Polytope& polytope, const Vec3& p, double e
     if (height > highest) highest = height, nearest = i;
   }
   const Vec3& normal = polytope.faces[nearest].normal;
-  if (highest <= 0.0 || highest > enough || is_over_face(polytope, nearest, p))
+  if (highest <= 0.0 || highest > enough || height_beside_face(polytope, nearest, p) <= 0.0)
     return {highest, normal, p - highest * normal, mix_features(0, nearest)};
   NearestPlace place(polytope, p);
   for (std::uint32_t i = 0; i < polytope.faces.size(); ++i) {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <span>
 
+#include "collision/segment.h"
 #include "math/four.h"
 #include "math/types.h"
 
@@ -18,6 +19,11 @@ struct Polytope {
     std::uint32_t first, count;  ///< Slice of `loops`: the face's vertices, counter-clockwise from outside.
     double width = 0.0;          ///< Across where it is narrow: twice its area over its perimeter [m].
   };
+  /// The plane through one side of a face and its normal: inside is outward . x <= offset.
+  struct Side {
+    Vec3 outward;   ///< Unit, in the face's plane; zero if the side has no length.
+    double offset;  ///< [m]
+  };
   struct Edge {
     std::uint32_t tail, head;             ///< Vertex indices.
     std::uint32_t left_face, right_face;  ///< Faces on either side; the loop of left_face runs tail -> head.
@@ -30,6 +36,7 @@ struct Polytope {
 
   std::span<const Vec3> vertices{};
   std::span<const std::uint32_t> loops{};
+  std::span<const Side> sides{};  ///< To each of `loops`: from there to the next of its face.
   std::span<const Face> faces{};
   std::span<const Edge> edges{};
   std::span<const std::uint32_t> neighbour_offsets{};  ///< Size vertices + 1: slice of `neighbours` of each.
@@ -41,6 +48,7 @@ struct Polytope {
   Vec3 centre = Vec3::Zero();  ///< Well inside.
   double radius = 0.0;         ///< Largest |vertex| [m].
 
+  std::span<const Side> sides_of(const Face& face) const { return sides.subspan(face.first, face.count); }
   std::span<const std::uint32_t> loop(const Face& face) const {
     return loops.subspan(face.first, face.count);
   }
@@ -49,6 +57,12 @@ struct Polytope {
     return edges_around.subspan(first, neighbour_offsets[vertex + 1] - first);
   }
 };
+
+/// The side of a face with this normal from one vertex to the next.
+inline Polytope::Side make_side(const Vec3& normal, const Vec3& tail, const Vec3& head) {
+  const Vec3 outward = direction_or((head - tail).cross(normal), Vec3::Zero());
+  return {outward, outward.dot(tail)};
+}
 
 /// Fills in the fours; there must be room for (count + 3) / 4 of them.
 void put_in_fours(std::span<const Vec3> vertices, FourVectors* fours);
@@ -86,10 +100,7 @@ inline Vec3 outward_from_edge(const Vec3& along, const Vec3& left_normal, const 
   return left_normal + right_normal + along.cross(left_normal - right_normal);
 }
 
-/// Whether the foot of p on the face's plane lies in the face.
-bool is_over_face(const Polytope& polytope, std::uint32_t face, const Vec3& p);
-
-/// How far the foot of p on the face's plane lies beside the face, by the lines of its edges [m]; < 0 inside.
+/// How far the foot of p on the face's plane lies beside the face, by the lines of its sides [m]; < 0 inside.
 double height_beside_face(const Polytope& polytope, std::uint32_t face, const Vec3& p);
 
 /// How deep p lies behind the nearest face but this one [m]; < 0: beyond one of them.

@@ -20,10 +20,16 @@ TrianglePolytope::TrianglePolytope(const std::array<Vec3, 3>& corners, const Vec
   const double width = u.cross(v).norm() / (u.norm() + v.norm() + (v - u).norm());
   const double offset = normal.dot(corners[0]);
   own_faces_ = {{{normal, offset, 0, 3, width}, {-normal, -offset, 3, 3, width}}};
+  for (std::size_t i = 0; i < 6; ++i) {
+    const std::size_t next = i % 3 == 2 ? i - 2 : i + 1;
+    own_sides_[i] =
+        make_side(own_faces_[i / 3].normal, corners[kTriangleLoops[i]], corners[kTriangleLoops[next]]);
+  }
   put_in_fours(own_vertices_, &own_vertex_four_);
   put_in_fours(own_faces_, &own_face_four_);
   static_cast<Polytope&>(*this) = {own_vertices_,
                                    kTriangleLoops,
+                                   own_sides_,
                                    own_faces_,
                                    kTriangleEdges,
                                    kTriangleNeighbourOffsets,

@@ -16,6 +16,7 @@ class TrianglePolytope : public Polytope {
 
  private:
   std::array<Vec3, 3> own_vertices_;
+  std::array<Side, 6> own_sides_;
   std::array<Face, 2> own_faces_;
   FourVectors own_vertex_four_;
   FourFaces own_face_four_;

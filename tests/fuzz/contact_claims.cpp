@@ -96,6 +96,7 @@ Shape scaled(const Shape& shape, double s) {
   if (pointer == nullptr) return shape;
   ConvexHull::Parts hull = (*pointer)->parts();
   for (Vec3& vertex : hull.vertices) vertex *= s;
+  for (Polytope::Side& side : hull.sides) side.offset *= s;
   for (Polytope::Face& face : hull.faces) face.offset *= s, face.width *= s;
   hull.centre *= s;
   hull.radius *= s;

@@ -17,6 +17,7 @@ HullPointer flat_triangle(const std::array<Vec3, 3>& corners, const Vec3& normal
   ConvexHull::Parts hull;
   hull.vertices.assign(flat.vertices.begin(), flat.vertices.end());
   hull.loops.assign(flat.loops.begin(), flat.loops.end());
+  hull.sides.assign(flat.sides.begin(), flat.sides.end());
   hull.faces.assign(flat.faces.begin(), flat.faces.end());
   hull.edges.assign(flat.edges.begin(), flat.edges.end());
   hull.neighbour_offsets.assign(flat.neighbour_offsets.begin(), flat.neighbour_offsets.end());

@@ -14,6 +14,7 @@
 #include "collision/clip.h"
 #include "collision/collide_triangle_hull.h"
 #include "collision/feature_name.h"
+#include "collision/point_heights.h"
 #include "collision/polytope.h"
 #include "collision/segment_contact.h"
 #include "math/rotation.h"
@@ -25,6 +26,8 @@ namespace {
 constexpr double kSameNormal = 1.0 - 2e-16;
 /// Rounding of a height, as part of the size.
 constexpr double kHeightRounding = 64.0 * std::numeric_limits<double>::epsilon();
+/// Sine by which a face may lean and still count as level: no rounding is as large.
+constexpr double kLevelFace = 1e-9;
 /// Overlap, as part of the body's radius, from which the corners' cones are searched as well. Up to there a wrong guess
 /// near a corner pushes by no more than that.
 constexpr double kDeep = 1e-3;
@@ -57,13 +60,12 @@ class TriangleQuery {
       if (t_.bend[k] == Bend::convex || t_.bend[k] == Bend::open) meet_edges(k);
     }
     if (core_.faces.empty()) meet_points();
-    if (best_.separation > enough_) return {};
-    if (best_.separation < -kDeep * core_.radius) meet_rings();
+    if (best_.separation > enough_ || yields()) return {};
     switch (best_.kind) {
-      case TriangleMeeting::Kind::own_face:
-        return lie_on_triangle();
       case TriangleMeeting::Kind::neighbour:
         return {};
+      case TriangleMeeting::Kind::own_face:
+        return lie_on_triangle();
       case TriangleMeeting::Kind::body_face:
         return lie_on_body();
       case TriangleMeeting::Kind::edges:
@@ -90,21 +92,30 @@ class TriangleQuery {
 
   /// False if a face of the body keeps the triangle away, whether the surface may push along it or not.
   bool meet_body_faces() {
-    for (std::uint32_t i = 0; i < core_.faces.size(); ++i) {
-      const Vec3& f = core_.faces[i].normal;
-      const std::size_t top = t_.top(-f);
-      const double separation = f.dot(t_.corner[top]) - core_.faces[i].offset;
-      if (separation > enough_) return false;
-      if (separation <= best_.separation + preference_.face) continue;
-      const bool is_own = t_.corner_allows(top, -f);
-      if (!is_own && !t_.corner_yields(top, -f)) continue;
-      best_ = {.kind = is_own ? TriangleMeeting::Kind::body_face : TriangleMeeting::Kind::neighbour,
-               .separation = separation,
-               .c = -f,
-               .body = i,
-               .edge = top};
+    for (std::size_t k = 0; k < 3; ++k) heights_[k].measure(core_, t_.corner[k]);
+    for (std::size_t i = 0; i < core_.face_fours.size(); ++i) {
+      const Four separation =
+          smaller(smaller(heights_[0].four_from(i), heights_[1].four_from(i)), heights_[2].four_from(i));
+      if (any(separation > four(enough_))) return false;
+      for_each_lane(separation > four(best_.separation), [&](std::size_t lane) {
+        if (4 * i + lane < core_.faces.size()) meet_body_face(static_cast<std::uint32_t>(4 * i + lane));
+      });
     }
     return true;
+  }
+
+  void meet_body_face(std::uint32_t i) {
+    const Vec3& f = core_.faces[i].normal;
+    const std::size_t top = t_.top(-f);
+    const double separation = f.dot(t_.corner[top]) - core_.faces[i].offset;
+    if (separation <= best_.separation + preference_.face) return;
+    const bool is_own = t_.corner_allows(top, -f);
+    if (!is_own && !t_.corner_yields(top, -f)) return;
+    best_ = {.kind = is_own ? TriangleMeeting::Kind::body_face : TriangleMeeting::Kind::neighbour,
+             .separation = separation,
+             .c = -f,
+             .body = i,
+             .edge = top};
   }
 
   void meet_neighbours() {
@@ -118,18 +129,37 @@ class TriangleQuery {
     }
   }
 
+  /// Whether the normals of an edge's faces lie on both sides of the plane across a line, as good as: seen along the line it
+  /// is part of the outline. `from` and `to`: heights of two points of the line, `level` apart times kLevelFace.
+  bool is_rim(const Polytope::Edge& edge, const PointHeights& from, const PointHeights& to,
+              double level) const {
+    if (core_.faces.empty()) return true;
+    const double left = to[edge.left_face] - from[edge.left_face],
+                 right = to[edge.right_face] - from[edge.right_face];
+    return !((left > level && right > level) || (left < -level && right < -level));
+  }
+  /// Whether such an edge is one of the body's upper side, if c is up.
+  bool is_above(const Polytope::Edge& edge, const Vec3& along, const Vec3& c) const {
+    if (core_.faces.empty()) return false;
+    return outward_from_edge(along, core_.faces[edge.left_face].normal, core_.faces[edge.right_face].normal)
+               .dot(c) > 0.0;
+  }
+
   void meet_edges(std::size_t k) {
     const Vec3 own = t_.along(k);
     const Vec3 outward = own.cross(t_.normal);
     const Vec3 between = t_.normal + (t_.bend[k] == Bend::open ? outward.normalized() : t_.beyond_normal[k]);
+    const double level = kLevelFace * own.norm();
     for (std::uint32_t i = 0; i < core_.edges.size(); ++i) {
-      const Vec3& tail = core_.vertices[core_.edges[i].tail];
-      const Vec3 across = own.cross(core_.vertices[core_.edges[i].head] - tail);
-      const double length2 = across.squaredNorm();
-      const double sin2 =
-          length2 / (own.squaredNorm() * (core_.vertices[core_.edges[i].head] - tail).squaredNorm());
+      const Polytope::Edge& edge = core_.edges[i];
+      if (!is_rim(edge, heights_[k], heights_[PlacedTriangle::next(k)], level)) continue;
+      const Vec3& tail = core_.vertices[edge.tail];
+      const Vec3 along = core_.vertices[edge.head] - tail, across = own.cross(along);
+      const double length2 = across.squaredNorm(), sin2 = length2 / (own.squaredNorm() * along.squaredNorm());
       if (!(sin2 > kParallel)) continue;
-      const Vec3 c = across * ((across.dot(between) < 0.0 ? -1.0 : 1.0) / std::sqrt(length2));
+      const double sign = across.dot(between) < 0.0 ? -1.0 : 1.0;
+      if (is_above(edge, along, sign * across)) continue;
+      const Vec3 c = across * (sign / std::sqrt(length2));
       const double offset = c.dot(t_.corner[k]);
       const double height = c.dot(tail) - offset;
       if (height <= best_.separation || !t_.edge_allows(k, c)) continue;
@@ -196,38 +226,64 @@ class TriangleQuery {
     best_ = meeting;
   }
 
-  /// A deep body may be nearer to the outside along a normal or an edge that the triangle has only a corner of: what
-  /// wins in a corner's cone belongs to the triangles around it.
-  void meet_rings() {
-    std::array<Vec3, kCornerEdges> others;
-    const Vec3& low = core_.vertices[descend(core_, best_.c, 0, -kInfinity).vertex];
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::size_t count = t_.surface.ring(t_.vertex[k], others);
-      for (std::size_t i = 0; i < count; ++i) others[i] = t_.R_AB * others[i] + t_.p_AB - t_.corner[k];
-      // Where nothing falls away from the triangle's plane the cone is its normal.
-      const auto falls_away = [&](const Vec3& d) { return t_.normal.dot(d) < -kFlatBend * d.norm(); };
-      if (std::none_of(others.begin(), others.begin() + static_cast<std::ptrdiff_t>(count), falls_away))
-        continue;
-      for (std::size_t i = 0; i < count; ++i) {
-        for (std::size_t j = 0; j < i; ++j) meet_cone(k, low, others[i].cross(others[j]));
-        for (const Polytope::Edge& edge : core_.edges) {
-          meet_cone(k, low, others[i].cross(core_.vertices[edge.head] - core_.vertices[edge.tail]));
-        }
-      }
-    }
+  /// Whether what is best belongs to another triangle.
+  bool yields() const {
+    if (best_.kind == TriangleMeeting::Kind::neighbour) return true;
+    return best_.separation < -kDeep * core_.radius && yields_to_corners();
   }
 
-  void meet_cone(std::size_t k, const Vec3& low, const Vec3& across) {
-    const double length = across.norm();
-    if (!(length > 0.0)) return;
-    for (const Vec3& c : {Vec3(across / length), Vec3(across / -length)}) {
-      // Any one point of the body bounds the separation from above.
-      if (c.dot(low - t_.corner[k]) <= best_.separation + preference_.edge) continue;
-      const double separation = lowest(c) - c.dot(t_.corner[k]);
-      if (separation <= best_.separation + preference_.edge) continue;
-      if (!t_.corner_allows(k, c) && !t_.corner_yields(k, c)) continue;
-      best_ = {.kind = TriangleMeeting::Kind::neighbour, .separation = separation, .c = c, .edge = k};
+  /// A deep body may be nearer to the outside along a normal or an edge that the triangle has only a corner of: what
+  /// wins in a corner's cone belongs to the triangles around it.
+  bool yields_to_corners() const {
+    const Vec3& low = core_.vertices[descend(core_, best_.c, 0, -kInfinity).vertex];
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (yields_to_corner(k, low)) return true;
     }
+    return false;
+  }
+
+  /// `low`: some point of the body that is low over the triangle.
+  bool yields_to_corner(std::size_t k, const Vec3& low) const {
+    std::array<Vec3, kCornerEdges> spokes;
+    const std::size_t count = t_.surface.ring(t_.vertex[k], spokes);
+    for (std::size_t i = 0; i < count; ++i) spokes[i] = t_.R_AB * spokes[i] + t_.p_AB - t_.corner[k];
+    // Where nothing falls away from the triangle's plane the cone is its normal.
+    const auto falls_away = [&](const Vec3& d) { return t_.normal.dot(d) < -kFlatBend * d.norm(); };
+    const auto end = spokes.begin() + static_cast<std::ptrdiff_t>(count);
+    if (std::none_of(spokes.begin(), end, falls_away)) return false;
+    for (std::size_t i = 0; i < count; ++i) {
+      for (std::size_t j = 0; j < i; ++j) {
+        const Vec3 across = spokes[i].cross(spokes[j]);
+        if (is_way_out(k, low, across) || is_way_out(k, low, -across)) return true;
+      }
+      if (yields_to_spoke(k, low, spokes[i])) return true;
+    }
+    return false;
+  }
+
+  /// To an axis across an edge of the surface, which leaves corner k, and one of the body that is lowest there.
+  bool yields_to_spoke(std::size_t k, const Vec3& low, const Vec3& spoke) const {
+    PointHeights end;
+    end.measure(core_, t_.corner[k] + spoke);
+    const double level = kLevelFace * spoke.norm();
+    for (const Polytope::Edge& edge : core_.edges) {
+      if (!is_rim(edge, heights_[k], end, level)) continue;
+      const Vec3 along = core_.vertices[edge.head] - core_.vertices[edge.tail], across = spoke.cross(along);
+      for (const Vec3& c : {across, Vec3(-across)}) {
+        if (!is_above(edge, along, c) && is_way_out(k, low, c)) return true;
+      }
+    }
+    return false;
+  }
+
+  /// Whether the body is separated more along `across` (of any length), which is in the cone of corner k.
+  bool is_way_out(std::size_t k, const Vec3& low, const Vec3& across) const {
+    // Any one point of the body bounds the separation from above.
+    const double needed = best_.separation + preference_.edge, length2 = across.squaredNorm();
+    const double reach = across.dot(low - t_.corner[k]);
+    if (!(length2 > 0.0) || reach * std::abs(reach) < needed * std::abs(needed) * length2) return false;
+    const Vec3 c = across / std::sqrt(length2);
+    return lowest(c) - c.dot(t_.corner[k]) > needed && (t_.corner_allows(k, c) || t_.corner_yields(k, c));
   }
 
   /// The edges that are seams of a plane, as marks. What continues flatly is clipped by the neighbour too, and its corners
@@ -320,6 +376,7 @@ class TriangleQuery {
   const double radius_, enough_, margin_;  // [m]
   const PlacedTriangle& t_;
   AxisPreference preference_;
+  std::array<PointHeights, 3> heights_;  // of the triangle's corners over the body's faces
   TriangleMeeting best_;
 };
 

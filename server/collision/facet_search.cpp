@@ -5,6 +5,7 @@
 #include <array>
 
 #include "collision/edge_arc.h"
+#include "collision/point_heights.h"
 #include "collision/segment.h"
 
 namespace tumble {
@@ -15,8 +16,6 @@ namespace {
 constexpr double kFacetTie = 1e-14;
 /// Share of B's radius: about a smaller disc a facet's neighbours are not told from it.
 constexpr double kLeastDisc = 1e-4;
-/// Fours of faces of each body whose bounds are kept; those of larger hulls are computed again where needed.
-constexpr std::size_t kKeptFours = 128;
 /// From so many pairs of edges on it pays to look for a better point against each edge.
 constexpr std::size_t kManyPairs = 256;
 /// Of a walk between faces and corners. If three don't end it, edges win.
@@ -33,39 +32,6 @@ std::uint32_t encode(const Facet& facet) {
   return static_cast<std::uint32_t>(facet.kind) << 2 * kIndexBits | facet.a << kIndexBits | facet.b;
 }
 
-/// Heights of one point of the other body over every face of this one: upper bounds of what the faces separate.
-class PointHeights {
- public:
-  PointHeights() {}  // not defaulted: `{}` would clear thousands of bytes
-
-  /// Returns the highest face, the nearest one of a body that the point is in.
-  std::uint32_t measure(const Polytope& polytope, const Vec3& point) {
-    polytope_ = &polytope;
-    point_ = point;
-    FirstLowest deepest;
-    for (std::size_t i = 0; i < polytope.face_fours.size(); ++i) {
-      const ConvexHull::FourFaces& face = polytope.face_fours[i];
-      const Four depth = face.offset - dot(face.normal, point);
-      if (i < kKeptFours) store_four(-depth, &heights_[4 * i]);
-      deepest.look_at(depth);
-    }
-    return deepest.index();
-  }
-  double operator[](std::size_t face) const {
-    return face < 4 * kKeptFours ? heights_[face] : height_over(face);
-  }
-  /// The heights of face 4 i and the three after it; i < kKeptFours.
-  Four four_from(std::size_t i) const { return load_four(&heights_[4 * i]); }
-
- private:
-  double height_over(std::size_t i) const {
-    return polytope_->faces[i].normal.dot(point_) - polytope_->faces[i].offset;
-  }
-  const Polytope* polytope_ = nullptr;
-  Vec3 point_ = Vec3::Zero();
-  std::array<double, 4 * kKeptFours> heights_;
-};
-
 /// One body and what is known of it: two points of the other one, measured over its faces.
 struct Side {
   const Polytope& polytope;
@@ -80,7 +46,7 @@ struct Side {
 class EdgesThatMayWin {
  public:
   EdgesThatMayWin(const Side& side, double depth) : side_(side), depth_(depth) {
-    const std::size_t fours = std::min(kKeptFours, side.polytope.face_fours.size());
+    const std::size_t fours = std::min(PointHeights::kKeptFours, side.polytope.face_fours.size());
     for (std::size_t i = 0; i < fours; ++i) {
       const FourFlags near = side.near.four_from(i) >= four(-depth),
                       nearer = side.nearer.four_from(i) >= four(-depth);
@@ -95,13 +61,13 @@ class EdgesThatMayWin {
  private:
   /// Bits of the two points that lie no deeper than that behind a face.
   int points_above(std::uint32_t face) const {
-    if (face < 4 * kKeptFours) return points_[face];
+    if (face < 4 * PointHeights::kKeptFours) return points_[face];
     return (side_.near[face] >= -depth_ ? 1 : 0) | (side_.nearer[face] >= -depth_ ? 2 : 0);
   }
 
   const Side& side_;
   const double depth_;
-  std::array<std::uint8_t, 4 * kKeptFours> points_;
+  std::array<std::uint8_t, 4 * PointHeights::kKeptFours> points_;
 };
 
 /// Where two bodies touch in a facet of their difference: a point of each; how far the facet reaches about the point of

@@ -16,19 +16,22 @@ constexpr std::array<std::uint32_t, 24> box_neighbours() {
   return neighbours;
 }
 
+/// The corner that follows in the loop of a face.
+constexpr std::uint32_t box_loop_after(std::uint32_t i) {
+  return kBoxLoops[i % 4 == 3 ? i - 3 : i + 1];
+}
+
 /// The face whose loop runs from one corner to the other.
 constexpr std::uint32_t box_face_left_of(std::uint32_t tail, std::uint32_t head) {
   std::uint32_t i = 0;
-  while (kBoxLoops[i] != tail || kBoxLoops[i % 4 == 3 ? i - 3 : i + 1] != head) ++i;
+  while (kBoxLoops[i] != tail || box_loop_after(i) != head) ++i;
   return i / 4;
 }
 
 /// The face beyond each side of each face: its plane is the plane of the side.
 constexpr std::array<std::uint32_t, 24> box_faces_beyond() {
   std::array<std::uint32_t, 24> beyond{};
-  for (std::uint32_t i = 0; i < 24; ++i) {
-    beyond[i] = box_face_left_of(kBoxLoops[i % 4 == 3 ? i - 3 : i + 1], kBoxLoops[i]);
-  }
+  for (std::uint32_t i = 0; i < 24; ++i) beyond[i] = box_face_left_of(box_loop_after(i), kBoxLoops[i]);
   return beyond;
 }
 
@@ -36,7 +39,7 @@ constexpr std::array<Polytope::Edge, 12> box_edges() {
   std::array<Polytope::Edge, 12> edges{};
   std::size_t n = 0;
   for (std::uint32_t i = 0; i < 24; ++i) {
-    const std::uint32_t tail = kBoxLoops[i], head = kBoxLoops[i % 4 == 3 ? i - 3 : i + 1];
+    const std::uint32_t tail = kBoxLoops[i], head = box_loop_after(i);
     if (tail < head) edges[n++] = {tail, head, i / 4, box_face_left_of(head, tail)};
   }
   return edges;

@@ -152,32 +152,34 @@ void measure_overhang(const PolytopePair& pair, const Facet& facet, const FacePa
                                pair.R_AB.transpose() * (pair.a.vertices[vertex_a] - pair.p_AB));
 }
 
-/// Whether a face and a corner touch, and nothing else of the corner's body comes as near.
-bool stands_alone(const PolytopePair& pair, const Facet& facet, std::uint32_t vertex_a,
-                  std::uint32_t vertex_b, double margin) {
+/// The corner that is lowest over the facet's face.
+struct LowestCorner {
+  LowestCorner(const PolytopePair& pair, const Facet& facet, std::uint32_t vertex_a, std::uint32_t vertex_b)
+      : is_b(facet.kind == Facet::Kind::face_a),
+        vertex(is_b ? vertex_b : vertex_a),
+        p_A(is_b ? Vec3(pair.R_AB * pair.b.vertices[vertex] + pair.p_AB) : pair.a.vertices[vertex]) {}
+  bool is_b;
+  std::uint32_t vertex;
+  Vec3 p_A;
+};
+
+/// Whether the corner touches the face, and nothing else of its body comes as near.
+bool stands_alone(const PolytopePair& pair, const Facet& facet, const LowestCorner& corner, double margin) {
   const double gap = margin - facet.separation;
-  if (facet.kind == Facet::Kind::face_a) {
-    const Vec3 corner = pair.R_AB * pair.b.vertices[vertex_b] + pair.p_AB;
-    const double slope2 = least_slope2({pair.b, vertex_b, pair.R_AB.transpose() * facet.normal_A}, gap);
-    return slope2 > 0.0 && holds_disc(pair.a, facet.a, corner, gap, slope2);
+  if (corner.is_b) {
+    const double slope2 = least_slope2({pair.b, corner.vertex, pair.R_AB.transpose() * facet.normal_A}, gap);
+    return slope2 > 0.0 && holds_disc(pair.a, facet.a, corner.p_A, gap, slope2);
   }
-  if (facet.kind == Facet::Kind::face_b) {
-    const Vec3 corner_B = pair.R_AB.transpose() * (pair.a.vertices[vertex_a] - pair.p_AB);
-    const double slope2 = least_slope2({pair.a, vertex_a, -facet.normal_A}, gap);
-    return slope2 > 0.0 && holds_disc(pair.b, facet.b, corner_B, gap, slope2);
-  }
-  return false;
+  const double slope2 = least_slope2({pair.a, corner.vertex, -facet.normal_A}, gap);
+  return slope2 > 0.0 &&
+         holds_disc(pair.b, facet.b, pair.R_AB.transpose() * (corner.p_A - pair.p_AB), gap, slope2);
 }
 
 /// What clipping would find then.
-Manifold stand_on_face(const PolytopePair& pair, const Facet& facet, std::uint32_t vertex_a,
-                       std::uint32_t vertex_b, double margin) {
-  const bool on_a = facet.kind == Facet::Kind::face_a;
-  const Vec3 corner =
-      on_a ? Vec3(pair.R_AB * pair.b.vertices[vertex_b] + pair.p_AB) : pair.a.vertices[vertex_a];
-  const double to_middle = (on_a ? -0.5 : 0.5) * facet.separation;
-  return single_point(facet.normal_A, corner + to_middle * facet.normal_A, facet.separation, margin,
-                      name_vertex(!on_a, on_a ? vertex_b : vertex_a));
+Manifold stand_on_face(const Facet& facet, const LowestCorner& corner, double margin) {
+  const double to_middle = (corner.is_b ? -0.5 : 0.5) * facet.separation;
+  return single_point(facet.normal_A, corner.p_A + to_middle * facet.normal_A, facet.separation, margin,
+                      name_vertex(!corner.is_b, corner.vertex));
 }
 
 /// The facet of the last search if its lead (kept by the pipeline) still holds, else a new search.
@@ -217,8 +219,10 @@ Manifold collide(const PolytopePair& pair, const Shape& a, const Shape& b, const
   cache.gap = facet.separation;
   cache.slack = lead;
   if (facet.separation > margin) return {};
-  if (stands_alone(pair, facet, cache.vertex_A, cache.vertex_B, margin))
-    return stand_on_face(pair, facet, cache.vertex_A, cache.vertex_B, margin);
+  if (facet.kind == Facet::Kind::face_a || facet.kind == Facet::Kind::face_b) {
+    const LowestCorner corner(pair, facet, cache.vertex_A, cache.vertex_B);
+    if (stands_alone(pair, facet, corner, margin)) return stand_on_face(facet, corner, margin);
+  }
   return touch_along(pair, facet, a, b, X_AB, margin, cache);
 }
 

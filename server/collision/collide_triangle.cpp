@@ -130,7 +130,7 @@ class TriangleQuery {
   }
 
   /// Whether the normals of an edge's faces lie on both sides of the plane across a line, as good as: seen along the line it
-  /// is part of the outline. `from` and `to`: heights of two points of the line, `level` apart times kLevelFace.
+  /// is part of the outline. `from` and `to`: heights of two points of the line; `level`: their distance times kLevelFace.
   bool is_rim(const Polytope::Edge& edge, const PointHeights& from, const PointHeights& to,
               double level) const {
     if (core_.faces.empty()) return true;
@@ -307,10 +307,11 @@ class TriangleQuery {
   }
 
   Manifold lie_on_triangle() const {
-    const auto side = [&](std::size_t k) {
-      return make_side(t_.normal, t_.corner[k], t_.corner[PlacedTriangle::next(k)]);
-    };
-    const FaceAxes axes(t_.corner[0], t_.normal, side(0));
+    std::array<Polytope::Side, 3> sides;
+    for (std::size_t k = 0; k < 3; ++k) {
+      sides[k] = make_side(t_.normal, t_.corner[k], t_.corner[PlacedTriangle::next(k)]);
+    }
+    const FaceAxes axes(t_.corner[0], t_.normal, sides[0]);
     const FacePlane plane(axes.origin(), axes.u(), t_.normal, t_.normal);
     ClipPolygon polygon(false);
     double width = t_.width();
@@ -331,7 +332,7 @@ class TriangleQuery {
     polygon.close();
     const ContactTolerance tolerance = ContactTolerance::of(width);
     for (std::size_t k = 0; k < 3; ++k) {
-      ClipSide seam = axes.see(side(k), t_.vertex[k], t_.vertex[PlacedTriangle::next(k)]);
+      ClipSide seam = axes.see(sides[k], t_.vertex[k], t_.vertex[PlacedTriangle::next(k)]);
       seam.mark = 1u << k;
       polygon.cut(seam, tolerance.inside);
     }

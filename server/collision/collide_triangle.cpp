@@ -46,7 +46,7 @@ struct TriangleMeeting {
 
 class TriangleQuery {
  public:
-  TriangleQuery(const Polytope& core, double radius, const PlacedTriangle& triangle, double margin)
+  TriangleQuery(const Polytope& core, double radius, PlacedTriangle& triangle, double margin)
       : core_(core), radius_(radius), enough_(margin + radius), margin_(margin), t_(triangle) {
     double size2 = 0.0;
     for (std::size_t k = 0; k < 3; ++k) size2 = std::max(size2, t_.along(k).squaredNorm());
@@ -54,7 +54,9 @@ class TriangleQuery {
   }
 
   Manifold run() {
-    if (!meet_own_face() || !meet_body_faces()) return {};
+    if (!meet_own_face() || is_kept_away()) return {};
+    t_.place_neighbours();
+    meet_body_faces();
     meet_neighbours();
     for (std::size_t k = 0; k < 3; ++k) {
       if (t_.bend[k] == Bend::convex || t_.bend[k] == Bend::open) meet_edges(k);
@@ -90,18 +92,26 @@ class TriangleQuery {
     return best_.separation <= enough_ && best_.separation + highest >= 0.0;
   }
 
-  /// False if a face of the body keeps the triangle away, whether the surface may push along it or not.
-  bool meet_body_faces() {
+  /// What faces 4 i to 4 i + 3 of the body separate.
+  Four separation_by_faces(std::size_t i) const {
+    return smaller(smaller(heights_[0].four_from(i), heights_[1].four_from(i)), heights_[2].four_from(i));
+  }
+
+  /// Whether a face of the body keeps the triangle away, whether the surface may push along it or not.
+  bool is_kept_away() {
     for (std::size_t k = 0; k < 3; ++k) heights_[k].measure(core_, t_.corner[k]);
     for (std::size_t i = 0; i < core_.face_fours.size(); ++i) {
-      const Four separation =
-          smaller(smaller(heights_[0].four_from(i), heights_[1].four_from(i)), heights_[2].four_from(i));
-      if (any(separation > four(enough_))) return false;
-      for_each_lane(separation > four(best_.separation), [&](std::size_t lane) {
+      if (any(separation_by_faces(i) > four(enough_))) return true;
+    }
+    return false;
+  }
+
+  void meet_body_faces() {
+    for (std::size_t i = 0; i < core_.face_fours.size(); ++i) {
+      for_each_lane(separation_by_faces(i) > four(best_.separation), [&](std::size_t lane) {
         if (4 * i + lane < core_.faces.size()) meet_body_face(static_cast<std::uint32_t>(4 * i + lane));
       });
     }
-    return true;
   }
 
   void meet_body_face(std::uint32_t i) {
@@ -375,7 +385,7 @@ class TriangleQuery {
 
   const Polytope& core_;
   const double radius_, enough_, margin_;  // [m]
-  const PlacedTriangle& t_;
+  PlacedTriangle& t_;
   AxisPreference preference_;
   std::array<PointHeights, 3> heights_;  // of the triangle's corners over the body's faces
   TriangleMeeting best_;
@@ -389,7 +399,7 @@ Manifold collide_triangle(const Shape& a, const TriangleSurface& b, std::uint32_
   static constexpr std::array<std::uint32_t, 3> kSegmentOffsets = {0, 1, 2};
   static constexpr std::array<std::uint32_t, 2> kSegmentNeighbours = {1, 0};
   static constexpr std::array<Polytope::Edge, 1> kSegmentEdges = {{{0, 1, 0, 0}}};
-  const PlacedTriangle triangle(b, part, X_AB);
+  PlacedTriangle triangle(b, part, X_AB);
   const auto query = [&](const Polytope& core, double radius) {
     return TriangleQuery(core, radius, triangle, margin).run();
   };

@@ -181,7 +181,7 @@ WayOut find_way_out(const Shape& a, const PlacedTriangle& t) {
 
 }  // namespace
 
-Manifold collide_triangle_hull(const Shape& a, const PlacedTriangle& t, double margin) {
+Manifold collide_triangle_hull(const Shape& a, PlacedTriangle& t, double margin) {
   const double plane = t.normal.dot(t.corner[0]);
   const double lowest = t.normal.dot(support(a, -t.normal)) - plane;
   const double highest = t.normal.dot(support(a, t.normal)) - plane;
@@ -191,6 +191,7 @@ Manifold collide_triangle_hull(const Shape& a, const PlacedTriangle& t, double m
   const Vec3 zero = Vec3::Zero();
   const Manifold met = collide_pieces({a, identity, zero}, {flat, identity, zero}, -t.normal, margin);
   if (met.count == 0) return {};
+  t.place_neighbours();
   const Vec3 c = -met.normal_A;
   if (same_direction(c, t.normal)) return lie_on_triangle(a, t, met, margin);
   for (std::size_t k = 0; k < 3; ++k) {

@@ -8,6 +8,6 @@
 
 namespace tumble {
 
-Manifold collide_triangle_hull(const Shape& a, const PlacedTriangle& triangle, double margin);
+Manifold collide_triangle_hull(const Shape& a, PlacedTriangle& triangle, double margin);
 
 }  // namespace tumble

@@ -73,31 +73,37 @@ Vec3 HeightField::normal_of(const std::array<std::uint32_t, 3>& corners) const {
 }
 
 SurfaceTriangle HeightField::triangle(std::uint32_t index) const {
-  const std::uint32_t cell = index / 2, half = index % 2, cells = columns_ - 1;
-  const std::uint32_t i = cell % cells, j = cell / cells;
+  const auto [i, j, half] = half_of(index);
+  SurfaceTriangle triangle;
+  triangle.vertex = corners(i, j, half);
+  triangle.normal = normal_of(triangle.vertex);
+  for (std::size_t k = 0; k < 3; ++k) triangle.corner[k] = at(triangle.vertex[k]);
+  return triangle;
+}
+
+TriangleNeighbours HeightField::neighbours(std::uint32_t index) const {
   // Across edge k of half 0 (below, right, diagonal) and of half 1 (diagonal, above, left): the neighbour's cell.
   struct Step {
     int di, dj;
   };
   constexpr Step kAcross[2][3] = {{{0, -1}, {1, 0}, {0, 0}}, {{0, 0}, {0, 1}, {-1, 0}}};
-  SurfaceTriangle triangle;
-  triangle.vertex = corners(i, j, half);
-  triangle.normal = normal_of(triangle.vertex);
-  for (std::size_t k = 0; k < 3; ++k) triangle.corner[k] = at(triangle.vertex[k]);
+  const auto [i, j, half] = half_of(index);
+  const SurfaceTriangle own = triangle(index);
+  TriangleNeighbours neighbours;
   for (std::size_t k = 0; k < 3; ++k) {
     const std::int64_t ni = std::int64_t{i} + kAcross[half][k].di, nj = std::int64_t{j} + kAcross[half][k].dj;
-    triangle.bend[k] = Bend::open;
-    if (ni < 0 || nj < 0 || ni >= cells || nj >= rows_ - 1) continue;
+    neighbours.bend[k] = Bend::open;
+    if (ni < 0 || nj < 0 || ni >= columns_ - 1 || nj >= rows_ - 1) continue;
     const auto other = corners(static_cast<std::uint32_t>(ni), static_cast<std::uint32_t>(nj), 1 - half);
-    const std::uint32_t tail = triangle.vertex[k], head = triangle.vertex[(k + 1) % 3];
+    const std::uint32_t tail = own.vertex[k], head = own.vertex[(k + 1) % 3];
     for (const std::uint32_t v : other) {
-      if (v != tail && v != head) triangle.beyond[k] = at(v);
+      if (v != tail && v != head) neighbours.beyond[k] = at(v);
     }
-    triangle.beyond_normal[k] = normal_of(other);
-    triangle.bend[k] = classify_bend(triangle.normal, triangle.corner[k], triangle.corner[(k + 1) % 3],
-                                     triangle.beyond[k], triangle.beyond_normal[k]);
+    neighbours.beyond_normal[k] = normal_of(other);
+    neighbours.bend[k] = classify_bend(own.normal, own.corner[k], own.corner[(k + 1) % 3],
+                                       neighbours.beyond[k], neighbours.beyond_normal[k]);
   }
-  return triangle;
+  return neighbours;
 }
 
 bool HeightField::is_top(std::uint32_t vertex_index, const Vec3& d) const {

@@ -18,6 +18,7 @@ class HeightField final : public TriangleSurface {
 
   std::uint32_t triangle_count() const override { return 2 * (columns_ - 1) * (rows_ - 1); }
   SurfaceTriangle triangle(std::uint32_t index) const override;
+  TriangleNeighbours neighbours(std::uint32_t index) const override;
   bool is_top(std::uint32_t vertex, const Vec3& d) const override;
   std::size_t ring(std::uint32_t vertex, std::span<Vec3> others) const override;
   void visit(const Aabb& bounds, TriangleVisitor visitor) const override;
@@ -43,6 +44,14 @@ class HeightField final : public TriangleSurface {
   };
 
   Vec3 vertex(std::uint32_t i, std::uint32_t j) const;
+  /// One of the two triangles of a cell.
+  struct Half {
+    std::uint32_t i, j, half;
+  };
+  Half half_of(std::uint32_t triangle) const {
+    const std::uint32_t cell = triangle / 2, cells = columns_ - 1;
+    return {cell % cells, cell / cells, triangle % 2};
+  }
   /// Corners (as grid vertices) of half `half` (0 or 1) of cell (i, j).
   std::array<std::uint32_t, 3> corners(std::uint32_t i, std::uint32_t j, std::uint32_t half) const;
   Vec3 at(std::uint32_t vertex_index) const {

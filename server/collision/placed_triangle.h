@@ -8,12 +8,21 @@
 
 namespace tumble {
 
-struct PlacedTriangle : SurfaceTriangle {
+/// Its neighbours are not known before `place_neighbours`.
+struct PlacedTriangle : SurfaceTriangle, TriangleNeighbours {
   PlacedTriangle(const TriangleSurface& of, std::uint32_t part, const Pose& X_AB)
-      : SurfaceTriangle(of.triangle(part)), surface(of), R_AB(rotation_matrix(X_AB.q)), p_AB(X_AB.p) {
+      : SurfaceTriangle(of.triangle(part)),
+        surface(of),
+        index(part),
+        R_AB(rotation_matrix(X_AB.q)),
+        p_AB(X_AB.p) {
     normal = R_AB * normal;
+    for (std::size_t k = 0; k < 3; ++k) corner[k] = R_AB * corner[k] + p_AB;
+  }
+
+  void place_neighbours() {
+    static_cast<TriangleNeighbours&>(*this) = surface.neighbours(index);
     for (std::size_t k = 0; k < 3; ++k) {
-      corner[k] = R_AB * corner[k] + p_AB;
       if (bend[k] == Bend::open) continue;
       beyond[k] = R_AB * beyond[k] + p_AB;
       beyond_normal[k] = R_AB * beyond_normal[k];
@@ -58,6 +67,7 @@ struct PlacedTriangle : SurfaceTriangle {
   static constexpr double kAlong = 1e-9;
 
   const TriangleSurface& surface;
+  std::uint32_t index;
   Mat3 R_AB;
   Vec3 p_AB;
 };

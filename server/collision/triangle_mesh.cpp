@@ -217,14 +217,19 @@ SurfaceTriangle TriangleMesh::triangle(std::uint32_t index) const {
   SurfaceTriangle triangle;
   triangle.normal = normals_[index];
   triangle.vertex = triangles_[index];
-  triangle.bend = bends_[index];
-  for (std::size_t k = 0; k < 3; ++k) {
-    triangle.corner[k] = vertices_[triangle.vertex[k]];
-    if (triangle.bend[k] == Bend::open) continue;
-    triangle.beyond[k] = vertices_[far_vertex(index, static_cast<std::uint32_t>(k))];
-    triangle.beyond_normal[k] = normals_[neighbours_[index][k]];
-  }
+  for (std::size_t k = 0; k < 3; ++k) triangle.corner[k] = vertices_[triangle.vertex[k]];
   return triangle;
+}
+
+TriangleNeighbours TriangleMesh::neighbours(std::uint32_t index) const {
+  TriangleNeighbours neighbours;
+  neighbours.bend = bends_[index];
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (neighbours.bend[k] == Bend::open) continue;
+    neighbours.beyond[k] = vertices_[far_vertex(index, static_cast<std::uint32_t>(k))];
+    neighbours.beyond_normal[k] = normals_[neighbours_[index][k]];
+  }
+  return neighbours;
 }
 
 bool TriangleMesh::is_top(std::uint32_t vertex, const Vec3& d) const {

@@ -19,6 +19,7 @@ class TriangleMesh final : public TriangleSurface {
 
   std::uint32_t triangle_count() const override { return static_cast<std::uint32_t>(triangles_.size()); }
   SurfaceTriangle triangle(std::uint32_t index) const override;
+  TriangleNeighbours neighbours(std::uint32_t index) const override;
   bool is_top(std::uint32_t vertex, const Vec3& d) const override;
   std::size_t ring(std::uint32_t vertex, std::span<Vec3> others) const override;
   void visit(const Aabb& bounds, TriangleVisitor visitor) const override;

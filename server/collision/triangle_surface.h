@@ -24,11 +24,14 @@ enum class Bend : std::uint8_t {
 /// precision, and 1 um of sagitta over a metre at most.
 inline constexpr double kFlatBend = 1e-5;
 
-/// Edge k runs from corner k to corner k + 1 (mod 3).
 struct SurfaceTriangle {
   std::array<Vec3, 3> corner;
   Vec3 normal;                          ///< Unit, outward.
   std::array<std::uint32_t, 3> vertex;  ///< The corners' indices in the surface.
+};
+
+/// What lies across the edges of a triangle. Edge k runs from corner k to corner k + 1 (mod 3).
+struct TriangleNeighbours {
   std::array<Bend, 3> bend;
   std::array<Vec3, 3> beyond;         ///< Far corner of the neighbour across edge k; undefined if open.
   std::array<Vec3, 3> beyond_normal;  ///< The neighbour's normal; undefined if open.
@@ -59,6 +62,8 @@ class TriangleSurface {
   virtual ~TriangleSurface() = default;
   virtual std::uint32_t triangle_count() const = 0;
   virtual SurfaceTriangle triangle(std::uint32_t index) const = 0;
+  /// Of a triangle. Most queries end before they need to know.
+  virtual TriangleNeighbours neighbours(std::uint32_t index) const = 0;
   /// True if no vertex joined to `vertex` by an edge lies further along d (unit) than it: a plane normal to d touches
   /// the surface there without cutting it. The angle by which a neighbour may rise is kTopTolerance.
   virtual bool is_top(std::uint32_t vertex, const Vec3& d) const = 0;

@@ -43,6 +43,16 @@ void tumble_cold(benchmark::State& state, const Course& course) {
   state.counters["points"] = static_cast<double>(points) / static_cast<double>(state.iterations());
 }
 
+/// What the others spend on going from pair to pair.
+void loop_alone(benchmark::State& state, const Course& course) {
+  Trace trace(course);
+  for (auto _ : state) {
+    Vec3 p_AB = trace.X_WB().p - trace.pair().X_WA.p;
+    benchmark::DoNotOptimize(p_AB);
+    trace.advance();
+  }
+}
+
 /// The pair function alone, between centres that are known.
 void sphere_function(benchmark::State& state, const Course& course) {
   Trace trace(course);
@@ -256,6 +266,7 @@ void register_polytopes(Registry& registry) {
 
 void register_curved(Registry& registry) {
   registry.add_class("sphere_sphere", sphere_sphere);
+  registry.add("sphere_sphere/loop_alone", loop_alone, sphere_sphere, 0.0);
   registry.add("sphere_sphere/function", sphere_function, sphere_sphere, 0.0);
   registry.add("sphere_sphere/tumble", tumble_kept, sphere_sphere, 1e-6, NarrowPhaseOptions{});
   registry.add_class("cylinder_on_box", cylinder_on_box);
@@ -274,6 +285,10 @@ void register_terrain(Registry& registry) {
   registry.add("sphere_on_terrain/tumble_cold", tumble_cold, sphere_on_terrain, 0.0);
   registry.add("box_on_terrain/tumble_cold", tumble_cold, box_on_terrain, 0.0);
   registry.add("hull32_on_terrain/tumble_cold", tumble_cold, hull_on_terrain, 0.0);
+  registry.add("capsule_on_terrain/tumble_cold", tumble_cold, capsule_on_terrain, 0.0);
+  registry.add("cylinder_on_terrain/tumble_cold", tumble_cold, cylinder_on_terrain, 0.0);
+  registry.add("cone_on_terrain/tumble_cold", tumble_cold, cone_on_terrain, 0.0);
+  registry.add("ellipsoid_on_terrain/tumble_cold", tumble_cold, ellipsoid_on_terrain, 0.0);
 }
 
 /// Takes the argument that begins with `option` out of them; null if there is none.

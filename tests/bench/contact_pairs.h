@@ -209,6 +209,18 @@ inline Pair sphere_on_terrain(Source& source) {
 inline Pair box_on_terrain(Source& source) {
   return on_terrain(source, kBox);
 }
+inline Pair capsule_on_terrain(Source& source) {
+  return on_terrain(source, Capsule{0.2, 0.3});
+}
+inline Pair cylinder_on_terrain(Source& source) {
+  return on_terrain(source, kCylinder);
+}
+inline Pair cone_on_terrain(Source& source) {
+  return on_terrain(source, kCone);
+}
+inline Pair ellipsoid_on_terrain(Source& source) {
+  return on_terrain(source, kEllipsoid);
+}
 inline Pair hull_on_terrain(Source& source) {
   static const HullPointer hull = hull32(source);
   return on_terrain(source, hull);

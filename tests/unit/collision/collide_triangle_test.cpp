@@ -233,7 +233,7 @@ TEST(CollideTriangle, TheWayThroughAFlatBodyAgreesWithTheExactOne) {
       if (exact.empty()) continue;
       std::vector<Touch> touches;
       for (std::uint32_t part = 0; part < mesh->triangle_count(); ++part) {
-        const PlacedTriangle triangle(*mesh, part, relative_pose(X, Pose{}));
+        PlacedTriangle triangle(*mesh, part, relative_pose(X, Pose{}));
         append(collide_triangle_hull(ellipsoid, triangle, 0.02), X, touches);
       }
       const Touch *expected = deepest_of(exact), *found = deepest_of(touches);

@@ -9,10 +9,10 @@
 #include <limits>
 #include <optional>
 
-#include "collision/axis_preference.h"
 #include "collision/box_polytope.h"
 #include "collision/clip.h"
 #include "collision/collide_triangle_hull.h"
+#include "collision/distance.h"
 #include "collision/feature_name.h"
 #include "collision/point_heights.h"
 #include "collision/polytope.h"
@@ -26,11 +26,13 @@ namespace {
 constexpr double kSameNormal = 1.0 - 2e-16;
 /// Rounding of a height, as part of the size.
 constexpr double kHeightRounding = 64.0 * std::numeric_limits<double>::epsilon();
+/// Axes whose separations differ by less than this share of the sizes are equal but for rounding: the first one stays.
+constexpr double kDirectionTie = 1e-14;
 /// Sine by which a face may lean and still count as level: no rounding is as large.
 constexpr double kLevelFace = 1e-9;
 /// Overlap, as part of the body's radius, from which the corners' cones are searched as well. Up to there a wrong guess
 /// near a corner pushes by no more than that.
-constexpr double kDeep = 1e-3;
+constexpr double kDeep = 0.0;
 constexpr std::size_t kCornerEdges = 32;  // edges of a corner that are looked at
 
 /// A direction and the features that meet along it.
@@ -46,32 +48,41 @@ struct TriangleMeeting {
 
 class TriangleQuery {
  public:
-  TriangleQuery(const Polytope& core, double radius, PlacedTriangle& triangle, double margin)
-      : core_(core), radius_(radius), enough_(margin + radius), margin_(margin), t_(triangle) {
+  TriangleQuery(const Shape& body, const Polytope& core, double radius, PlacedTriangle& triangle,
+                double margin)
+      : body_(body), core_(core), radius_(radius), enough_(margin + radius), margin_(margin), t_(triangle) {
     double size2 = 0.0;
     for (std::size_t k = 0; k < 3; ++k) size2 = std::max(size2, t_.along(k).squaredNorm());
-    preference_ = AxisPreference::of(std::min(core.radius + radius, std::sqrt(size2)));
+    tie_ = kDirectionTie * (core.radius + radius + std::sqrt(size2));
   }
 
   Manifold run() {
     if (!meet_own_face() || is_kept_away()) return {};
     t_.place_neighbours();
+    if (best_.kind == TriangleMeeting::Kind::neighbour && t_.is_at_rim()) return {};
     meet_body_faces();
     meet_neighbours();
     for (std::size_t k = 0; k < 3; ++k) {
       if (t_.bend[k] == Bend::convex || t_.bend[k] == Bend::open) meet_edges(k);
     }
     if (core_.faces.empty()) meet_points();
-    if (best_.separation > enough_ || yields()) return {};
+    if (best_.separation > enough_ || yields() || is_behind(best_.c)) return {};
+    const Manifold manifold = touch_along_best();
+    return core_.faces.empty() || is_whole_truth(manifold) ? manifold : touch_closest(manifold);
+  }
+
+ private:
+  Manifold touch_along_best() const {
+    const bool is_flat = best_.c.dot(t_.normal) > ContactTolerance::kFlat;
     switch (best_.kind) {
       case TriangleMeeting::Kind::neighbour:
         return {};
       case TriangleMeeting::Kind::own_face:
-        return lie_on_triangle();
+        return lie_on_triangle(best_.c);
       case TriangleMeeting::Kind::body_face:
         return lie_on_body();
       case TriangleMeeting::Kind::edges:
-        return cross_edges();
+        return is_flat ? lie_across_edge() : cross_edges();
       case TriangleMeeting::Kind::vertex:
         break;
     }
@@ -80,16 +91,38 @@ class TriangleQuery {
     return single_point(-best_.c, middle, separation, margin_, best_.body);
   }
 
- private:
+  /// Whether what touches along the best axis is as near as that says, or overlaps.
+  bool is_whole_truth(const Manifold& manifold) const {
+    if (manifold.count == 0) return false;
+    return best_.separation < -tie_ || least_separation(manifold) <= best_.separation + tie_;
+  }
+
+  /// Corners that look at each other, with no face or pair of edges between: the closest points, if the surface may push
+  /// along the way between them. Else what was found along the best axis.
+  Manifold touch_closest(const Manifold& along_axis) const {
+    const Distance distance = compute_distance(body_, t_.corner, Pose{}, {.beyond = margin_});
+    const Vec3 c = -distance.axis_A;
+    if (distance.overlap || distance.lower > margin_ || !t_.allows_about(c)) return along_axis;
+    // What lies over the triangle is known from clipping, and faces that lie on each other keep their polygon.
+    if ((c - t_.normal).squaredNorm() <= PlacedTriangle::kAbout * PlacedTriangle::kAbout) return along_axis;
+    if (along_axis.count > 0 && -c.dot(along_axis.normal_A) > ContactTolerance::kFaceToFace)
+      return along_axis;
+    const double separation = lowest(c) - c.dot(t_.corner[t_.top(c)]);
+    return single_point(-c, 0.5 * (distance.a_A + distance.b_A), separation, margin_, name_corners());
+  }
+
   double lowest(const Vec3& c) const { return descend(core_, c, 0, -kInfinity).height; }
 
-  /// False if the body is too high above the plane, or behind it.
+  /// Whether the middle of the body is further in than the triangle, along c.
+  bool is_behind(const Vec3& c) const { return lowest(c) - lowest(-c) < 2.0 * c.dot(t_.corner[t_.top(c)]); }
+
+  /// False if the body is too high above the plane. One that is behind it may yet touch a ridge or a corner.
   bool meet_own_face() {
-    const double plane = t_.normal.dot(t_.corner[0]);
     best_.c = t_.normal;
-    best_.separation = lowest(t_.normal) - plane;
-    const double highest = -lowest(-t_.normal) - plane;
-    return best_.separation <= enough_ && best_.separation + highest >= 0.0;
+    best_.separation = lowest(t_.normal) - t_.normal.dot(t_.corner[0]);
+    if (best_.separation > enough_) return false;
+    if (is_behind(t_.normal)) best_.kind = TriangleMeeting::Kind::neighbour;
+    return true;
   }
 
   /// What faces 4 i to 4 i + 3 of the body separate.
@@ -114,11 +147,17 @@ class TriangleQuery {
     }
   }
 
+  /// Up to what a flat surface allows: there everything pushes along the normal to the last digit.
+  bool is_own_normal(const Vec3& c) const {
+    constexpr double kAsFlat = 4.0 * PlacedTriangle::kAlong;
+    return (c - t_.normal).squaredNorm() <= kAsFlat * kAsFlat;
+  }
+
   void meet_body_face(std::uint32_t i) {
     const Vec3& f = core_.faces[i].normal;
     const std::size_t top = t_.top(-f);
     const double separation = f.dot(t_.corner[top]) - core_.faces[i].offset;
-    if (separation <= best_.separation + preference_.face) return;
+    if (separation <= best_.separation + tie_ || is_own_normal(-f)) return;
     const bool is_own = t_.corner_allows(top, -f);
     if (!is_own && !t_.corner_yields(top, -f)) return;
     best_ = {.kind = is_own ? TriangleMeeting::Kind::body_face : TriangleMeeting::Kind::neighbour,
@@ -173,12 +212,9 @@ class TriangleQuery {
       const double offset = c.dot(t_.corner[k]);
       const double height = c.dot(tail) - offset;
       if (height <= best_.separation || !t_.edge_allows(k, c)) continue;
-      const double separation = lowest(c) - offset;
+      const double separation = lowest(c) - c.dot(t_.corner[t_.top(c)]);
       if (height > separation + kHeightRounding * core_.radius) continue;  // another edge is the lowest
-      if (best_.kind != TriangleMeeting::Kind::edges &&
-          !preference_.takes_edge(best_.separation, best_.c, separation, c, sin2)) {
-        continue;
-      }
+      if (separation <= best_.separation + tie_ || is_own_normal(c)) continue;
       best_ = {.kind = TriangleMeeting::Kind::edges, .separation = separation, .c = c, .body = i, .edge = k};
     }
   }
@@ -289,7 +325,7 @@ class TriangleQuery {
   /// Whether the body is separated more along `across` (of any length), which is in the cone of corner k.
   bool is_way_out(std::size_t k, const Vec3& low, const Vec3& across) const {
     // Any one point of the body bounds the separation from above.
-    const double needed = best_.separation + preference_.edge, length2 = across.squaredNorm();
+    const double needed = best_.separation + tie_, length2 = across.squaredNorm();
     const double reach = across.dot(low - t_.corner[k]);
     if (!(length2 > 0.0) || reach * std::abs(reach) < needed * std::abs(needed) * length2) return false;
     const Vec3 c = across / std::sqrt(length2);
@@ -316,21 +352,33 @@ class TriangleQuery {
     return builder.finish();
   }
 
-  Manifold lie_on_triangle() const {
+  /// Edges that cross nearly in the triangle's plane: all that lies over it, measured along their axis.
+  Manifold lie_across_edge() const {
+    const Manifold crossing = cross_edges();
+    if (crossing.count == 0) return crossing;
+    Manifold lying = lie_on_triangle(best_.c);
+    if (lying.count == 0) return crossing;
+    set_deepest(lying, least_separation(crossing));
+    return lying;
+  }
+
+  /// Along c, not far from the triangle's normal.
+  Manifold lie_on_triangle(const Vec3& c) const {
     std::array<Polytope::Side, 3> sides;
     for (std::size_t k = 0; k < 3; ++k) {
       sides[k] = make_side(t_.normal, t_.corner[k], t_.corner[PlacedTriangle::next(k)]);
     }
     const FaceAxes axes(t_.corner[0], t_.normal, sides[0]);
-    const FacePlane plane(axes.origin(), axes.u(), t_.normal, t_.normal);
+    const FacePlane plane(axes.origin(), axes.u(), t_.normal, c);
     ClipPolygon polygon(false);
     double width = t_.width();
+    bool face_to_face = true;
     if (core_.faces.empty()) {
       for (std::uint32_t i = 0; i < core_.vertices.size(); ++i) {
         polygon.add_vertex(plane.to_plane(core_.vertices[i]), i);
       }
     } else {
-      const Polytope::Face& face = core_.faces[face_towards(core_, -t_.normal)];
+      const Polytope::Face& face = core_.faces[face_towards(core_, -c)];
       const auto loop = core_.loop(face);
       const std::size_t count = std::min<std::size_t>(loop.size(), kMaxFaceVertices);
       for (std::size_t k = 0; k < count; ++k) {
@@ -338,15 +386,18 @@ class TriangleQuery {
         polygon.add_vertex(plane.to_plane(core_.vertices[vertex]), vertex);
       }
       width = std::min(width, face.width);
+      face_to_face = std::min(-face.normal.dot(c), t_.normal.dot(c)) > ContactTolerance::kFaceToFace;
     }
     polygon.close();
-    const ContactTolerance tolerance = ContactTolerance::of(width);
+    const ContactTolerance tolerance = ContactTolerance::of(width),
+                           strict = ContactTolerance::of(width, face_to_face);
     for (std::size_t k = 0; k < 3; ++k) {
       ClipSide seam = axes.see(sides[k], t_.vertex[k], t_.vertex[PlacedTriangle::next(k)]);
       seam.mark = 1u << k;
-      polygon.cut(seam, tolerance.inside);
+      const bool ends = t_.bend[k] == Bend::convex || t_.bend[k] == Bend::open;
+      polygon.cut(seam, ends ? std::max(strict.inside, tie_) : tolerance.inside);
     }
-    return collect(polygon, plane, -t_.normal, tolerance.merge);
+    return collect(polygon, plane, -c, tolerance.merge);
   }
 
   Manifold lie_on_body() const {
@@ -360,7 +411,8 @@ class TriangleQuery {
       polygon.add_vertex(plane.to_plane(t_.corner[k]), t_.vertex[k], 1u << k);
     }
     polygon.close();
-    const ContactTolerance tolerance = ContactTolerance::of(std::min(face.width, t_.width()));
+    const bool face_to_face = -face.normal.dot(t_.normal) > ContactTolerance::kFaceToFace;
+    const ContactTolerance tolerance = ContactTolerance::of(std::min(face.width, t_.width()), face_to_face);
     for (std::size_t i = 0; i < loop.size(); ++i) {
       polygon.cut(axes.see(sides[i], loop[i], loop[i + 1 == loop.size() ? 0 : i + 1]), tolerance.inside);
     }
@@ -383,10 +435,11 @@ class TriangleQuery {
                                                t_.vertex[PlacedTriangle::next(best_.edge)]));
   }
 
+  const Shape& body_;
   const Polytope& core_;
   const double radius_, enough_, margin_;  // [m]
   PlacedTriangle& t_;
-  AxisPreference preference_;
+  double tie_;                           // [m]
   std::array<PointHeights, 3> heights_;  // of the triangle's corners over the body's faces
   TriangleMeeting best_;
 };
@@ -401,7 +454,7 @@ Manifold collide_triangle(const Shape& a, const TriangleSurface& b, std::uint32_
   static constexpr std::array<Polytope::Edge, 1> kSegmentEdges = {{{0, 1, 0, 0}}};
   PlacedTriangle triangle(b, part, X_AB);
   const auto query = [&](const Polytope& core, double radius) {
-    return TriangleQuery(core, radius, triangle, margin).run();
+    return TriangleQuery(a, core, radius, triangle, margin).run();
   };
   if (const auto* sphere = std::get_if<Sphere>(&a)) {
     const std::array<Vec3, 1> centre = {Vec3::Zero()};

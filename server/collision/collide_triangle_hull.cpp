@@ -1,13 +1,16 @@
 // See collide_triangle_hull.h. In A's frame.
 #include "collision/collide_triangle_hull.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "collision/collide_curved.h"
+#include "collision/distance.h"
 #include "collision/feature_name.h"
 #include "collision/manifold_builder.h"
 #include "collision/narrow_phase.h"
+#include "collision/nearest_surface.h"
 #include "collision/segment.h"
 #include "collision/triangle_polytope.h"
 #include "math/rotation.h"
@@ -15,11 +18,9 @@
 namespace tumble {
 namespace {
 
-/// Sine of the angle below which a direction is a normal of the surface itself: what iterative searches leave.
-constexpr double kSameFace = 1e-6;
-
+/// Up to what iterative searches leave.
 bool same_direction(const Vec3& a, const Vec3& b) {
-  return (a - b).squaredNorm() <= kSameFace * kSameFace;
+  return (a - b).squaredNorm() <= PlacedTriangle::kAbout * PlacedTriangle::kAbout;
 }
 
 Manifold ask(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB, double margin) {
@@ -36,18 +37,9 @@ bool lies_inside(const PlacedTriangle& t, const Vec3& p, double tolerance) {
   return true;
 }
 
-/// As PlacedTriangle asks, for a direction that is known up to kSameFace: across an edge it is taken as exactly so.
-bool allows(const PlacedTriangle& t, const Vec3& c) {
-  const std::size_t top = t.top(c);
-  if (t.corner_allows(top, c)) return true;
-  for (const std::size_t k : {top, PlacedTriangle::previous(top)}) {
-    const Vec3 edge = t.along(k).normalized();
-    const double slant = edge.dot(c);
-    const bool borders = t.bend[k] == Bend::convex || t.bend[k] == Bend::open;
-    if (borders && std::abs(slant) <= kSameFace && t.edge_allows(k, (c - slant * edge).normalized()))
-      return true;
-  }
-  return false;
+/// Whether the middle of the body is further in than the triangle, along c.
+bool is_behind(const Shape& a, const PlacedTriangle& t, const Vec3& c) {
+  return c.dot(support(a, -c) + support(a, c)) < 2.0 * c.dot(t.corner[t.top(c)]);
 }
 
 /// What lies over the triangle of the contact with its plane, and, if it is not all seams, what it meets of the body.
@@ -70,31 +62,31 @@ Manifold lie_on_triangle(const Shape& a, const PlacedTriangle& t, const Manifold
   return builder.finish();
 }
 
-/// A way out of the surface: along the triangle's own normal, a neighbour's, or one between them, across their ridge.
+/// A way out of the surface: along the triangle's own normal, across one of its ridges, off one of its corners, or some way
+/// that other triangles have.
 struct WayOut {
-  enum class Kind { own, neighbour, ridge };
+  enum class Kind { own, neighbour, ridge, corner };
   Kind kind = Kind::own;
   Vec3 c = Vec3::UnitZ();  ///< Unit, out of the surface.
   double separation = -kInfinity;
-  std::size_t edge = 0;
+  std::size_t place = 0;       ///< The corner or ridge.
   Vec3 p_body = Vec3::Zero();  ///< The body's lowest point along c.
 };
 
-WayOut go_along(const Shape& a, const PlacedTriangle& t, WayOut::Kind kind, std::size_t edge, const Vec3& c) {
+/// Corner `place`, or the ridge from there on, is furthest out along c.
+WayOut go_along(const Shape& a, const PlacedTriangle& t, WayOut::Kind kind, std::size_t place,
+                const Vec3& c) {
   const Vec3 p = support(a, -c);
-  return {kind, c, c.dot(p - t.corner[edge]), edge, p};
+  return {kind, c, c.dot(p - t.corner[place]), place, p};
 }
 
-/// The best direction between the triangle's normal and the other side of a ridge: the best of samples, and between its
-/// neighbours by the golden section.
-WayOut cross_ridge(const Shape& a, const PlacedTriangle& t, std::size_t k) {
+/// The best between two directions: the best of samples, and between its neighbours by the golden section.
+WayOut go_between(const Shape& a, const PlacedTriangle& t, WayOut::Kind kind, std::size_t place,
+                  const Vec3& from, const Vec3& to) {
   constexpr int kSamples = 16, kSections = 60;
   constexpr double kGolden = 0.6180339887498949;
-  const Vec3 end =
-      t.bend[k] == Bend::open ? Vec3(t.along(k).cross(t.normal).normalized()) : t.beyond_normal[k];
   const auto at = [&](double share) {
-    return go_along(a, t, WayOut::Kind::ridge, k,
-                    direction_or((1.0 - share) * t.normal + share * end, t.normal));
+    return go_along(a, t, kind, place, direction_or((1.0 - share) * from + share * to, from));
   };
   int best = 0;
   double most = -kInfinity;
@@ -115,43 +107,109 @@ WayOut cross_ridge(const Shape& a, const PlacedTriangle& t, std::size_t k) {
   return at(0.5 * (low + high));
 }
 
-/// Where the body's lowest point lies beside an edge, between its ends.
+/// Where p lies beside an edge, between its ends but for rounding.
 bool is_beside(const PlacedTriangle& t, std::size_t k, const Vec3& p) {
-  const double along = t.along(k).dot(p - t.corner[k]);
-  return along >= 0.0 && along <= t.along(k).squaredNorm();
+  constexpr double kEnd = 1e-9;
+  const double length2 = t.along(k).squaredNorm(), along = t.along(k).dot(p - t.corner[k]) / length2;
+  return along >= -kEnd && along <= 1.0 + kEnd;
 }
 
-/// A body near a corner may be nearer to the outside some way that the triangle has only a corner of. The corner's cone of
-/// directions is spanned by planes through two of its edges; ways between these are tried in steps, which is enough to
-/// know that another triangle's is shorter.
-WayOut turn_round_corner(const Shape& a, const PlacedTriangle& t, std::size_t k) {
-  constexpr std::size_t kEdges = 32, kRays = 8;
-  constexpr int kSteps = 8;
-  std::array<Vec3, kEdges> others;
-  const std::size_t count = t.surface.ring(t.vertex[k], others);
-  for (std::size_t i = 0; i < count; ++i) others[i] = t.R_AB * others[i] + t.p_AB - t.corner[k];
-  std::array<Vec3, kRays> rays;
-  std::size_t spanned = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    for (std::size_t j = 0; j < i; ++j) {
-      const Vec3 across = others[i].cross(others[j]);
-      const double length = across.norm();
-      for (const double sign : {1.0, -1.0}) {
-        const Vec3 c = across * (sign / length);
-        if (length > 0.0 && spanned < kRays && (t.corner_allows(k, c) || t.corner_yields(k, c)))
-          rays[spanned++] = c;
+/// A ridge that goes on straight is left to the triangle that has the piece where the body is lowest.
+WayOut cross_ridge(const Shape& a, const PlacedTriangle& t, std::size_t k) {
+  const Vec3 beyond =
+      t.bend[k] == Bend::open ? Vec3(t.along(k).cross(t.normal).normalized()) : t.beyond_normal[k];
+  WayOut way = go_between(a, t, WayOut::Kind::ridge, k, t.normal, beyond);
+  if (!is_beside(t, k, way.p_body)) way.kind = WayOut::Kind::neighbour;
+  return way;
+}
+
+/// The directions along which a corner of the surface is furthest out are a cone. Its rays are normals of the faces there:
+/// each is square to two or more of the edges that leave the corner, which are bits of `spokes`.
+struct ConeOfCorner {
+  struct Ray {
+    Vec3 c;
+    std::uint32_t spokes;
+  };
+  static constexpr std::size_t kSpokes = 32, kRays = 16;
+
+  ConeOfCorner(const PlacedTriangle& t, std::size_t k) {
+    std::array<Vec3, kSpokes> spokes;
+    const std::size_t of_surface = t.surface.ring(t.vertex[k], spokes);
+    for (std::size_t i = 0; i < of_surface; ++i) {
+      spokes[i] = t.R_AB * spokes[i] + t.p_AB - t.corner[k];
+      if (is_same(spokes[i], t.along(k)) || is_same(spokes[i], -t.along(PlacedTriangle::previous(k))))
+        own |= 1u << i;
+      for (std::size_t j = 0; j < i; ++j) {
+        const Vec3 across = direction_or(spokes[i].cross(spokes[j]), Vec3::Zero());
+        for (const double sign : {1.0, -1.0}) add(t, k, sign * across, 1u << i | 1u << j);
       }
     }
   }
+
+  std::array<Ray, kRays> rays;
+  std::size_t count = 0;
+  std::uint32_t own = 0;  ///< Spokes that are edges of the triangle.
+
+ private:
+  static bool is_same(const Vec3& spoke, const Vec3& edge) {
+    return (spoke - edge).squaredNorm() <= 1e-18 * edge.squaredNorm();
+  }
+  void add(const PlacedTriangle& t, std::size_t k, const Vec3& c, std::uint32_t spokes) {
+    if (c.isZero(0.0) || !(t.corner_allows(k, c) || t.corner_yields(k, c))) return;
+    const auto end = rays.begin() + static_cast<std::ptrdiff_t>(count);
+    const auto known =
+        std::find_if(rays.begin(), end, [&](const Ray& ray) { return same_direction(ray.c, c); });
+    if (known != end) {
+      known->spokes |= spokes;
+    } else if (count < kRays) {
+      rays[count++] = {c, spokes};
+    }
+  }
+};
+
+/// Unit normals of each part of a body's surface at its place nearest to p, of an ellipsoid at the nearest one.
+struct NormalsAround {
+  NormalsAround(const Shape& a, const Vec3& p) {
+    const Vec3 beside = direction_or(Vec3(p.x(), p.y(), 0.0), Vec3::UnitX());
+    if (std::holds_alternative<Cylinder>(a)) {
+      normals = {Vec3::UnitZ(), -Vec3::UnitZ(), beside};
+      count = 3;
+    } else if (const auto* cone = std::get_if<Cone>(&a)) {
+      normals[0] = -Vec3::UnitZ();
+      normals[1] = (2.0 * cone->half_length * beside + cone->radius * Vec3::UnitZ()).normalized();
+      count = 2;
+    } else {
+      normals[0] = nearest_surface(*std::get_if<Ellipsoid>(&a), p).outward_S;
+      count = 1;
+    }
+  }
+  std::array<Vec3, 3> normals;
+  std::size_t count;
+};
+
+/// A body near a corner may be nearer to the outside along a normal or across a ridge that the triangle has only a corner
+/// of, or to the corner itself.
+WayOut turn_round_corner(const Shape& a, const PlacedTriangle& t, std::size_t k) {
   WayOut best;
-  for (std::size_t i = 0; i < spanned; ++i) {
-    for (std::size_t j = 0; j <= i; ++j) {
-      for (int step = 0; step < (i == j ? 1 : kSteps); ++step) {
-        const double share = static_cast<double>(step) / kSteps;
-        const Vec3 c = direction_or(share * rays[i] + (1.0 - share) * rays[j], rays[i]);
-        const WayOut way = go_along(a, t, WayOut::Kind::neighbour, k, c);
-        if (way.separation > best.separation) best = way;
-      }
+  const auto offer = [&](const WayOut& way) {
+    if (way.separation > best.separation) best = way;
+  };
+  const ConeOfCorner cone(t, k);
+  for (std::size_t i = 0; i < cone.count; ++i) {
+    const ConeOfCorner::Ray& ray = cone.rays[i];
+    offer(go_along(a, t, WayOut::Kind::neighbour, k, ray.c));
+    for (std::size_t j = 0; j < i; ++j) {
+      if ((ray.spokes & cone.rays[j].spokes & ~cone.own) != 0)
+        offer(go_between(a, t, WayOut::Kind::neighbour, k, cone.rays[j].c, ray.c));
+    }
+  }
+  const NormalsAround around(a, t.corner[k]);
+  for (std::size_t i = 0; i < around.count; ++i) {
+    const Vec3 c = -around.normals[i];
+    if (t.corner_allows(k, c)) {
+      offer(go_along(a, t, WayOut::Kind::corner, k, c));
+    } else if (t.corner_yields(k, c)) {
+      offer(go_along(a, t, WayOut::Kind::neighbour, k, c));
     }
   }
   return best;
@@ -168,13 +226,13 @@ WayOut find_way_out(const Shape& a, const PlacedTriangle& t) {
     if (beyond.separation > best.separation + tie) best = beyond;
   }
   for (std::size_t k = 0; k < 3; ++k) {
-    const WayOut round = turn_round_corner(a, t, k);
-    if (round.separation > best.separation + tie) best = round;
-  }
-  for (std::size_t k = 0; k < 3; ++k) {
     if (t.bend[k] != Bend::convex && t.bend[k] != Bend::open) continue;
     const WayOut across = cross_ridge(a, t, k);
-    if (across.separation > best.separation + tie && is_beside(t, k, across.p_body)) best = across;
+    if (across.separation > best.separation + tie) best = across;
+  }
+  for (std::size_t k = 0; k < 3; ++k) {
+    const WayOut round = turn_round_corner(a, t, k);
+    if (round.separation > best.separation + tie) best = round;
   }
   return best;
 }
@@ -182,29 +240,31 @@ WayOut find_way_out(const Shape& a, const PlacedTriangle& t) {
 }  // namespace
 
 Manifold collide_triangle_hull(const Shape& a, PlacedTriangle& t, double margin) {
-  const double plane = t.normal.dot(t.corner[0]);
-  const double lowest = t.normal.dot(support(a, -t.normal)) - plane;
-  const double highest = t.normal.dot(support(a, t.normal)) - plane;
-  if (lowest > margin || lowest + highest < 0.0) return {};
+  if (t.normal.dot(support(a, -t.normal) - t.corner[0]) > margin) return {};
+  if (compute_distance(a, t.corner, Pose{}, {.beyond = margin}).lower > margin) return {};
   const TrianglePolytope flat(t.corner, t.normal);
   const Mat3 identity = Mat3::Identity();
   const Vec3 zero = Vec3::Zero();
   const Manifold met = collide_pieces({a, identity, zero}, {flat, identity, zero}, -t.normal, margin);
   if (met.count == 0) return {};
   t.place_neighbours();
+  const bool behind = is_behind(a, t, t.normal);
+  if (behind && t.is_at_rim()) return {};
   const Vec3 c = -met.normal_A;
-  if (same_direction(c, t.normal)) return lie_on_triangle(a, t, met, margin);
+  if (same_direction(c, t.normal)) return behind ? Manifold() : lie_on_triangle(a, t, met, margin);
   for (std::size_t k = 0; k < 3; ++k) {
     if (t.bend[k] == Bend::convex && same_direction(c, t.beyond_normal[k])) return {};
   }
-  if (allows(t, c)) return met;
+  if (t.allows_about(c)) return is_behind(a, t, c) ? Manifold() : met;
   if (t.corner_yields(t.top(c), c)) return {};
   // The shortest way out of the flat triangle is none out of the surface.
   const WayOut way = find_way_out(a, t);
-  if (way.separation > margin || way.kind == WayOut::Kind::neighbour) return {};
+  if (way.separation > margin || way.kind == WayOut::Kind::neighbour || is_behind(a, t, way.c)) return {};
   if (way.kind == WayOut::Kind::own) return lie_on_triangle(a, t, met, margin);
   const std::uint32_t name =
-      name_crossing(0, 0, t.vertex[way.edge], t.vertex[PlacedTriangle::next(way.edge)]);
+      way.kind == WayOut::Kind::corner
+          ? name_vertex(false, t.vertex[way.place])
+          : name_crossing(0, 0, t.vertex[way.place], t.vertex[PlacedTriangle::next(way.place)]);
   return single_point(-way.c, way.p_body - 0.5 * way.separation * way.c, way.separation, margin, name);
 }
 

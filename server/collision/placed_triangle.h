@@ -45,6 +45,8 @@ struct PlacedTriangle : SurfaceTriangle, TriangleNeighbours {
     return along(0).cross(along(1)).norm() / (along(0).norm() + along(1).norm() + along(2).norm());
   }
 
+  /// Does the surface end at one of its edges?
+  bool is_at_rim() const { return bend[0] == Bend::open || bend[1] == Bend::open || bend[2] == Bend::open; }
   /// Is c (unit, normal to edge k) between the normals of the two sides of the edge?
   bool edge_allows(std::size_t k, const Vec3& c) const {
     if (!stays_below(corner[previous(k)], corner[k], c)) return false;
@@ -58,11 +60,27 @@ struct PlacedTriangle : SurfaceTriangle, TriangleNeighbours {
            is_top(k, c);
   }
 
+  /// May the surface push along c here, if that is known up to kAbout? Across an edge it is taken as exactly so.
+  bool allows_about(const Vec3& c) const {
+    const std::size_t highest = top(c);
+    if (corner_allows(highest, c)) return true;
+    for (const std::size_t k : {highest, previous(highest)}) {
+      const Vec3 edge = along(k).normalized();
+      const double slant = edge.dot(c);
+      const bool borders = bend[k] == Bend::convex || bend[k] == Bend::open;
+      if (borders && std::abs(slant) <= kAbout && edge_allows(k, (c - slant * edge).normalized()))
+        return true;
+    }
+    return false;
+  }
+
   bool is_top(std::size_t k, const Vec3& c) const {
     return stays_below(corner[next(k)], corner[k], c) && stays_below(corner[previous(k)], corner[k], c) &&
            surface.is_top(vertex[k], R_AB.transpose() * c);
   }
 
+  /// Sine of the angle that an iterative search leaves of a direction.
+  static constexpr double kAbout = 1e-6;
   /// Sine by which a direction may point into the triangle's plane.
   static constexpr double kAlong = 1e-9;
 

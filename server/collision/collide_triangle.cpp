@@ -105,9 +105,12 @@ class TriangleQuery {
     if (distance.overlap || distance.lower > margin_ || !t_.allows_about(c)) return along_axis;
     // What lies over the triangle is known from clipping, and faces that lie on each other keep their polygon.
     if ((c - t_.normal).squaredNorm() <= PlacedTriangle::kAbout * PlacedTriangle::kAbout) return along_axis;
-    if (along_axis.count > 0 && -c.dot(along_axis.normal_A) > ContactTolerance::kFaceToFace)
-      return along_axis;
     const double separation = lowest(c) - c.dot(t_.corner[t_.top(c)]);
+    if (along_axis.count > 0 && c.dot(t_.normal) > ContactTolerance::kFaceToFace) {
+      Manifold lying = lie_on_triangle(c);
+      set_deepest(lying, separation);
+      if (lying.count > 0) return lying;
+    }
     return single_point(-c, 0.5 * (distance.a_A + distance.b_A), separation, margin_, name_corners());
   }
 

@@ -30,10 +30,6 @@ constexpr double kHeightRounding = 64.0 * std::numeric_limits<double>::epsilon()
 constexpr double kDirectionTie = 1e-14;
 /// Sine by which a face may lean and still count as level: no rounding is as large.
 constexpr double kLevelFace = 1e-9;
-/// Overlap, as part of the body's radius, from which the corners' cones are searched as well. Up to there a wrong guess
-/// near a corner pushes by no more than that.
-constexpr double kDeep = 0.0;
-constexpr std::size_t kCornerEdges = 32;  // edges of a corner that are looked at
 
 /// A direction and the features that meet along it.
 struct TriangleMeeting {
@@ -63,10 +59,12 @@ class TriangleQuery {
     meet_body_faces();
     meet_neighbours();
     for (std::size_t k = 0; k < 3; ++k) {
-      if (t_.bend[k] == Bend::convex || t_.bend[k] == Bend::open) meet_edges(k);
+      if (t_.is_ridge(k)) meet_edges(k);
     }
     if (core_.faces.empty()) meet_points();
-    if (best_.separation > enough_ || yields() || is_behind(best_.c)) return {};
+    if (best_.separation > enough_) return {};
+    if (best_.kind != TriangleMeeting::Kind::own_face && is_behind(best_.c, lowest(best_.c))) return {};
+    if (yields()) return {};
     const Manifold manifold = touch_along_best();
     return core_.faces.empty() || is_whole_truth(manifold) ? manifold : touch_closest(manifold);
   }
@@ -104,7 +102,7 @@ class TriangleQuery {
     const Vec3 c = -distance.axis_A;
     if (distance.overlap || distance.lower > margin_ || !t_.allows_about(c)) return along_axis;
     // What lies over the triangle is known from clipping, and faces that lie on each other keep their polygon.
-    if ((c - t_.normal).squaredNorm() <= PlacedTriangle::kAbout * PlacedTriangle::kAbout) return along_axis;
+    if (PlacedTriangle::same_direction(c, t_.normal)) return along_axis;
     const double separation = lowest(c) - c.dot(t_.corner[t_.top(c)]);
     if (along_axis.count > 0 && c.dot(t_.normal) > ContactTolerance::kFaceToFace) {
       Manifold lying = lie_on_triangle(c);
@@ -116,15 +114,18 @@ class TriangleQuery {
 
   double lowest(const Vec3& c) const { return descend(core_, c, 0, -kInfinity).height; }
 
-  /// Whether the middle of the body is further in than the triangle, along c.
-  bool is_behind(const Vec3& c) const { return lowest(c) - lowest(-c) < 2.0 * c.dot(t_.corner[t_.top(c)]); }
+  /// Whether the middle of the body is further in than the triangle, along c. `low`: the body's lowest height along it.
+  bool is_behind(const Vec3& c, double low) const {
+    return low - lowest(-c) < 2.0 * c.dot(t_.corner[t_.top(c)]);
+  }
 
   /// False if the body is too high above the plane. One that is behind it may yet touch a ridge or a corner.
   bool meet_own_face() {
     best_.c = t_.normal;
-    best_.separation = lowest(t_.normal) - t_.normal.dot(t_.corner[0]);
+    const double low = lowest(t_.normal);
+    best_.separation = low - t_.normal.dot(t_.corner[0]);
     if (best_.separation > enough_) return false;
-    if (is_behind(t_.normal)) best_.kind = TriangleMeeting::Kind::neighbour;
+    if (is_behind(t_.normal, low)) best_.kind = TriangleMeeting::Kind::neighbour;
     return true;
   }
 
@@ -199,8 +200,7 @@ class TriangleQuery {
 
   void meet_edges(std::size_t k) {
     const Vec3 own = t_.along(k);
-    const Vec3 outward = own.cross(t_.normal);
-    const Vec3 between = t_.normal + (t_.bend[k] == Bend::open ? outward.normalized() : t_.beyond_normal[k]);
+    const Vec3 between = t_.normal + t_.normal_across(k);
     const double level = kLevelFace * own.norm();
     for (std::uint32_t i = 0; i < core_.edges.size(); ++i) {
       const Polytope::Edge& edge = core_.edges[i];
@@ -278,10 +278,10 @@ class TriangleQuery {
   /// Whether what is best belongs to another triangle.
   bool yields() const {
     if (best_.kind == TriangleMeeting::Kind::neighbour) return true;
-    return best_.separation < -kDeep * core_.radius && yields_to_corners();
+    return best_.separation < 0.0 && yields_to_corners();
   }
 
-  /// A deep body may be nearer to the outside along a normal or an edge that the triangle has only a corner of: what
+  /// A body that overlaps may be nearer to the outside along a normal or an edge that the triangle has only a corner of: what
   /// wins in a corner's cone belongs to the triangles around it.
   bool yields_to_corners() const {
     const Vec3& low = core_.vertices[descend(core_, best_.c, 0, -kInfinity).vertex];
@@ -293,9 +293,8 @@ class TriangleQuery {
 
   /// `low`: some point of the body that is low over the triangle.
   bool yields_to_corner(std::size_t k, const Vec3& low) const {
-    std::array<Vec3, kCornerEdges> spokes;
-    const std::size_t count = t_.surface.ring(t_.vertex[k], spokes);
-    for (std::size_t i = 0; i < count; ++i) spokes[i] = t_.R_AB * spokes[i] + t_.p_AB - t_.corner[k];
+    std::array<Vec3, PlacedTriangle::kSpokes> spokes;
+    const std::size_t count = t_.find_spokes(k, spokes);
     // Where nothing falls away from the triangle's plane the cone is its normal.
     const auto falls_away = [&](const Vec3& d) { return t_.normal.dot(d) < -kFlatBend * d.norm(); };
     const auto end = spokes.begin() + static_cast<std::ptrdiff_t>(count);
@@ -392,13 +391,12 @@ class TriangleQuery {
       face_to_face = std::min(-face.normal.dot(c), t_.normal.dot(c)) > ContactTolerance::kFaceToFace;
     }
     polygon.close();
-    const ContactTolerance tolerance = ContactTolerance::of(width),
-                           strict = ContactTolerance::of(width, face_to_face);
+    const ContactTolerance tolerance = ContactTolerance::of(width);
+    const double beside_ridge = std::max(face_to_face ? tolerance.inside : 0.0, tie_);
     for (std::size_t k = 0; k < 3; ++k) {
       ClipSide seam = axes.see(sides[k], t_.vertex[k], t_.vertex[PlacedTriangle::next(k)]);
       seam.mark = 1u << k;
-      const bool ends = t_.bend[k] == Bend::convex || t_.bend[k] == Bend::open;
-      polygon.cut(seam, ends ? std::max(strict.inside, tie_) : tolerance.inside);
+      polygon.cut(seam, t_.is_ridge(k) ? beside_ridge : tolerance.inside);
     }
     return collect(polygon, plane, -c, tolerance.merge);
   }

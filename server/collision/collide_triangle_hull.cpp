@@ -18,11 +18,6 @@
 namespace tumble {
 namespace {
 
-/// Up to what iterative searches leave.
-bool same_direction(const Vec3& a, const Vec3& b) {
-  return (a - b).squaredNorm() <= PlacedTriangle::kAbout * PlacedTriangle::kAbout;
-}
-
 Manifold ask(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB, double margin) {
   PairCache cache;
   NarrowPhaseCounters counters;
@@ -54,7 +49,7 @@ Manifold lie_on_triangle(const Shape& a, const PlacedTriangle& t, const Manifold
     if (lies_inside(t, p, tolerance.inside)) builder.add(p, point.separation, point.feature);
   }
   const bool all_seams = t.bend[0] == Bend::flat && t.bend[1] == Bend::flat && t.bend[2] == Bend::flat;
-  if (!all_seams && same_direction(met.normal_A, -t.normal)) {
+  if (!all_seams && PlacedTriangle::same_direction(met.normal_A, -t.normal)) {
     for (std::size_t i = 0; i < static_cast<std::size_t>(met.count); ++i) {
       builder.add(met.points[i].p_A, met.points[i].separation, met.points[i].feature);
     }
@@ -116,9 +111,7 @@ bool is_beside(const PlacedTriangle& t, std::size_t k, const Vec3& p) {
 
 /// A ridge that goes on straight is left to the triangle that has the piece where the body is lowest.
 WayOut cross_ridge(const Shape& a, const PlacedTriangle& t, std::size_t k) {
-  const Vec3 beyond =
-      t.bend[k] == Bend::open ? Vec3(t.along(k).cross(t.normal).normalized()) : t.beyond_normal[k];
-  WayOut way = go_between(a, t, WayOut::Kind::ridge, k, t.normal, beyond);
+  WayOut way = go_between(a, t, WayOut::Kind::ridge, k, t.normal, t.normal_across(k));
   if (!is_beside(t, k, way.p_body)) way.kind = WayOut::Kind::neighbour;
   return way;
 }
@@ -130,13 +123,12 @@ struct ConeOfCorner {
     Vec3 c;
     std::uint32_t spokes;
   };
-  static constexpr std::size_t kSpokes = 32, kRays = 16;
+  static constexpr std::size_t kRays = 16;
 
   ConeOfCorner(const PlacedTriangle& t, std::size_t k) {
-    std::array<Vec3, kSpokes> spokes;
-    const std::size_t of_surface = t.surface.ring(t.vertex[k], spokes);
+    std::array<Vec3, PlacedTriangle::kSpokes> spokes;
+    const std::size_t of_surface = t.find_spokes(k, spokes);
     for (std::size_t i = 0; i < of_surface; ++i) {
-      spokes[i] = t.R_AB * spokes[i] + t.p_AB - t.corner[k];
       if (is_same(spokes[i], t.along(k)) || is_same(spokes[i], -t.along(PlacedTriangle::previous(k))))
         own |= 1u << i;
       for (std::size_t j = 0; j < i; ++j) {
@@ -157,8 +149,8 @@ struct ConeOfCorner {
   void add(const PlacedTriangle& t, std::size_t k, const Vec3& c, std::uint32_t spokes) {
     if (c.isZero(0.0) || !(t.corner_allows(k, c) || t.corner_yields(k, c))) return;
     const auto end = rays.begin() + static_cast<std::ptrdiff_t>(count);
-    const auto known =
-        std::find_if(rays.begin(), end, [&](const Ray& ray) { return same_direction(ray.c, c); });
+    const auto known = std::find_if(rays.begin(), end,
+                                    [&](const Ray& ray) { return PlacedTriangle::same_direction(ray.c, c); });
     if (known != end) {
       known->spokes |= spokes;
     } else if (count < kRays) {
@@ -226,7 +218,7 @@ WayOut find_way_out(const Shape& a, const PlacedTriangle& t) {
     if (beyond.separation > best.separation + tie) best = beyond;
   }
   for (std::size_t k = 0; k < 3; ++k) {
-    if (t.bend[k] != Bend::convex && t.bend[k] != Bend::open) continue;
+    if (!t.is_ridge(k)) continue;
     const WayOut across = cross_ridge(a, t, k);
     if (across.separation > best.separation + tie) best = across;
   }
@@ -251,9 +243,10 @@ Manifold collide_triangle_hull(const Shape& a, PlacedTriangle& t, double margin)
   const bool behind = is_behind(a, t, t.normal);
   if (behind && t.is_at_rim()) return {};
   const Vec3 c = -met.normal_A;
-  if (same_direction(c, t.normal)) return behind ? Manifold() : lie_on_triangle(a, t, met, margin);
+  if (PlacedTriangle::same_direction(c, t.normal))
+    return behind ? Manifold() : lie_on_triangle(a, t, met, margin);
   for (std::size_t k = 0; k < 3; ++k) {
-    if (t.bend[k] == Bend::convex && same_direction(c, t.beyond_normal[k])) return {};
+    if (t.bend[k] == Bend::convex && PlacedTriangle::same_direction(c, t.beyond_normal[k])) return {};
   }
   if (t.allows_about(c)) return is_behind(a, t, c) ? Manifold() : met;
   if (t.corner_yields(t.top(c), c)) return {};

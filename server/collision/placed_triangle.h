@@ -45,6 +45,24 @@ struct PlacedTriangle : SurfaceTriangle, TriangleNeighbours {
     return along(0).cross(along(1)).norm() / (along(0).norm() + along(1).norm() + along(2).norm());
   }
 
+  /// Two directions that are one, up to what an iterative search leaves.
+  static bool same_direction(const Vec3& a, const Vec3& b) {
+    return (a - b).squaredNorm() <= kAbout * kAbout;
+  }
+
+  /// Can the surface be furthest out along an edge?
+  bool is_ridge(std::size_t k) const { return bend[k] == Bend::convex || bend[k] == Bend::open; }
+  /// Normal of what lies across a ridge: the neighbour or the wall below a rim.
+  Vec3 normal_across(std::size_t k) const {
+    return bend[k] == Bend::open ? Vec3(along(k).cross(normal).normalized()) : beyond_normal[k];
+  }
+  /// Edges of the surface that leave corner k, from there on; of more than kSpokes the first. Returns how many.
+  static constexpr std::size_t kSpokes = 32;
+  std::size_t find_spokes(std::size_t k, std::array<Vec3, kSpokes>& spokes) const {
+    const std::size_t count = surface.ring(vertex[k], spokes);
+    for (std::size_t i = 0; i < count; ++i) spokes[i] = R_AB * spokes[i] + p_AB - corner[k];
+    return count;
+  }
   /// Does the surface end at one of its edges?
   bool is_at_rim() const { return bend[0] == Bend::open || bend[1] == Bend::open || bend[2] == Bend::open; }
   /// Is c (unit, normal to edge k) between the normals of the two sides of the edge?
@@ -67,8 +85,7 @@ struct PlacedTriangle : SurfaceTriangle, TriangleNeighbours {
     for (const std::size_t k : {highest, previous(highest)}) {
       const Vec3 edge = along(k).normalized();
       const double slant = edge.dot(c);
-      const bool borders = bend[k] == Bend::convex || bend[k] == Bend::open;
-      if (borders && std::abs(slant) <= kAbout && edge_allows(k, (c - slant * edge).normalized()))
+      if (is_ridge(k) && std::abs(slant) <= kAbout && edge_allows(k, (c - slant * edge).normalized()))
         return true;
     }
     return false;
